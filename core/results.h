@@ -1,0 +1,58 @@
+/* results.h: what a run leaves: results.h5 + results.xdmf, history.csv, summary.json; monitors and expects. */
+#ifndef AB_RESULTS_H
+#define AB_RESULTS_H
+
+#include "core/domain.h"
+
+typedef struct ab_contact_totals { /* of one contact of the scene */
+    double impulse[3];      /* N s on the second body in the last step */
+    double force[3];        /* impulse / dt */
+    double moment;          /* N m about the origin, on the second body */
+    double normal_force;    /* N, sum of |normal| parts */
+    double friction_force;  /* N, |sum of tangential parts| */
+    size_t points, active;  /* contact points in the last step; those with an impulse */
+    double penetration;     /* m, deepest in the last step, >= 0 */
+    double friction_work, contact_work; /* J so far */
+} ab_contact_totals;
+
+typedef struct ab_state_view { /* what monitors and writers look at; borrowed from the scheduler */
+    const ab_scene *scene;
+    double time, dt;
+    long step;
+    const char *limit;                   /* what binds dt */
+    ab_domain **domains;                 /* body_count */
+    const ab_contact_totals *contacts;   /* contact_count */
+    const ab_energy *energy;             /* per body, friction and contact booked */
+    const ab_motion *motion;
+    const ab_energy *energy_start;       /* per body at t = 0 */
+    ab_energy total;
+    double remainder;                    /* J: what the discretisation made (+) or lost (-) */
+} ab_state_view;
+
+typedef struct ab_results ab_results;
+
+/* Makes the folder and files. Nothing is written when anything is wrong. */
+ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **results, ab_report *report);
+/* After every step (and once before the first): history row when due, monitors and expects always, a frame when due. */
+ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report);
+/* A frame now, whatever is due (the end, a failure). */
+ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report);
+
+typedef struct ab_run_facts { /* for the summary and the closing table */
+    double wall_seconds, cpu_seconds, point_steps_per_second;
+    size_t peak_bytes, bytes_per_point, points;
+    long steps;
+    int threads;
+    const char *version, *outcome; /* "done", "failed: ...", "stopped by signal 2" */
+    const char *plan_json;         /* the plan as JSON text, or NULL */
+    double phase_seconds[8];       /* where the time went */
+    const char *phase_names[8];
+} ab_run_facts;
+
+/* Evaluates expects, writes summary.json, closes the files. *missed: expects that missed. */
+ab_status ab_results_close(ab_results *results, const ab_state_view *view, const ab_run_facts *facts, size_t *missed, ab_report *report);
+/* The closing table on a stream (from the same numbers as summary.json). Call before close. */
+void ab_results_table(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, FILE *stream);
+void ab_results_destroy(ab_results *results);
+
+#endif

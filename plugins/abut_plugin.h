@@ -1,0 +1,266 @@
+/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.0.
+ *
+ * One source file makes one shared object. The object exports one symbol, and it is data:
+ *
+ *     AB_EXPORT const ab_plugin abut_plugin_v1 = { ... };
+ *
+ * abut reads this table before it runs any code of the plugin. A plugin offers classes of three kinds:
+ *   material  turns strain into stress                                   (ab_material_ops)
+ *   boundary  turns the state of an edge into a force                    (ab_boundary_ops)
+ *   contact   finds contact points, or responds to them, or both        (ab_contact_ops)
+ *
+ * Conventions, stated once:
+ *   units        SI everywhere: m, kg, s, N, Pa. The host converts what the user wrote.
+ *   sign         tension is positive.
+ *   components   stress, strain: (xx, yy, zz, xy) in plane strain, (xx, yy, zz, xy, yz, zx) in 3-D;
+ *                strain increments hold *engineering* shear (gamma_xy = 2 eps_xy), so that the work is the plain
+ *                sum of products of the components;
+ *                deformation gradient (xx, xy, yx, yy, zz) in plane strain, row by row (9) in 3-D;
+ *                velocity gradient    (xx, xy, yx, yy)     in plane strain, row by row (9) in 3-D; L_ij = dv_i/dx_j.
+ *   arrays       component c of item i is a[c*ld + i]. ld >= count. Rows are 64-byte aligned when ld is a multiple of 8.
+ *   ownership    every pointer that the host hands over belongs to the host and is valid until the call returns, except
+ *                the ab_host table and the settings' texts and tables, which live until destroy() has returned.
+ *   old state    is never written: state0, stress0 in; state1, stress1 out. The host may call again with the same input.
+ *   threads      create, destroy: one at a time. update (materials): several threads at once on disjoint batches of the
+ *                same self, so keep no hidden state, no globals, and allocate nothing. find, respond: one thread at a time.
+ *   returns      0; a positive code: "cut the step and try again"; a negative code: an error. Flag the culprits in
+ *                batch->flag and say why through host->message.
+ *   structs      each struct that crosses begins with its size in bytes; the host copies min(size, own size) into a zeroed one,
+ *                so fields are only ever added at the end.
+ */
+#ifndef ABUT_PLUGIN_H
+#define ABUT_PLUGIN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
+#define AB_ABI_MINOR 0u /* grows when something is added; a plugin may be older than the host, never newer */
+
+#if defined(__GNUC__)
+#define AB_EXPORT __attribute__((visibility("default")))
+#else
+#define AB_EXPORT
+#endif
+
+/* ---- settings: what the user may write in the scene ------------------------------------------------------------------ */
+
+enum ab_type {
+    AB_REAL = 1,  /* value.real, SI */
+    AB_INTEGER,   /* value.integer */
+    AB_FLAG,      /* value.integer, 0 or 1 */
+    AB_CHOICE,    /* value.integer, the place of the word in `choices`, from 0 */
+    AB_TABLE      /* value.table, rows x columns, row by row */
+};
+
+enum ab_param_flags {
+    AB_REQUIRED = 1u,     /* no default: a scene without it is refused */
+    AB_MIN_OPEN = 2u,     /* the value must be > min, not >= */
+    AB_MAX_OPEN = 4u,     /* the value must be < max, not <= */
+    AB_OR_DIRECTION = 8u, /* AB_CHOICE only: a vector [x, y(, z)] may stand instead of a word;
+                             then value.integer = -1 and value.table is the unit vector, 3 numbers */
+    AB_COLUMNS_2 = 16u    /* AB_TABLE only: each row is a pair */
+};
+
+typedef struct ab_param {
+    const char *name;    /* the key in the scene, lower_case; the field's usual symbol where there is one (E, nu) */
+    const char *unit;    /* SI unit as UDUNITS reads it: "Pa", "kg m-3"; "1" for a pure number */
+    const char *help;    /* one line */
+    const char *choices; /* AB_CHOICE: words separated by '|' ; else NULL */
+    uint32_t type;       /* enum ab_type */
+    uint32_t flags;      /* enum ab_param_flags */
+    double initial;      /* default; for AB_CHOICE the place of the word */
+    double min, max;     /* allowed range, -INFINITY and INFINITY (or 0, 0 for "any") where there is none */
+} ab_param;
+
+typedef struct ab_value { /* one per ab_param, in its order */
+    double real;
+    int64_t integer;
+    const double *table;
+    size_t rows, columns;
+    uint32_t given; /* 1 where the scene had it, 0 where it is the default */
+} ab_value;
+
+/* ---- state: what the host keeps for the plugin, per material point, Gauss point or contact point ---------------------- */
+
+enum ab_shape { AB_SCALAR = 1, AB_VECTOR, AB_SYMMETRIC, AB_FULL }; /* how it turns with the material; symmetric: as stress */
+enum ab_travel { AB_COPY = 1, AB_AVERAGE, AB_SUM };                /* when points are split or merged */
+
+typedef struct ab_state {
+    const char *name, *unit, *help;
+    uint32_t shape, travel;
+    double initial; /* every component starts with it */
+} ab_state;
+
+/* ---- services of the host --------------------------------------------------------------------------------------------- */
+
+struct ab_points;
+
+typedef struct ab_host {
+    uint32_t struct_size, abi_major, abi_minor;
+    void *context;                                                       /* hand it back in each call */
+    void *(*allocate)(void *context, size_t bytes);                      /* 64-byte aligned, zeroed; NULL when there is no memory; not in update */
+    void (*release)(void *context, void *pointer);
+    void (*message)(void *context, const char *text);                    /* what went wrong; kept for the error that follows; any thread */
+    void (*log)(void *context, const char *text);                        /* a line for the user; create only */
+    int (*reserve)(void *context, struct ab_points *points, size_t points_more, size_t stencil_more); /* find only: room for more; 0 or negative */
+} ab_host;
+
+/* ---- materials -------------------------------------------------------------------------------------------------------- */
+
+enum ab_needs { /* what a class asks for; what nobody asks for is not computed and arrives as NULL */
+    AB_NEED_DEFORMATION_GRADIENT = 1u,
+    AB_NEED_VELOCITY_GRADIENT = 2u,
+    /* contact finders */
+    AB_NEED_SHARED_NODES = 16u,
+    AB_NEED_MASS_GRADIENT = 32u,
+    AB_NEED_AREA_VECTOR = 64u,
+    AB_NEED_NEAR_POINTS = 128u
+};
+enum ab_gives {
+    AB_GIVE_STRESS = 1u,
+    AB_GIVE_DISSIPATION = 2u, /* fills batch->dissipation */
+    AB_GIVE_WAVE_SPEED = 4u,  /* fills batch->wave_speed when it is not NULL */
+    /* contact */
+    AB_GIVE_POINTS = 16u,  /* has find */
+    AB_GIVE_IMPULSE = 32u  /* has respond */
+};
+
+typedef struct ab_batch {
+    uint32_t struct_size;
+    uint32_t dimension;  /* 2 (plane strain) or 3 */
+    uint32_t components; /* of stress: 4 or 6 */
+    size_t count, ld;
+    double time, dt;     /* s; in start: dt = 0 */
+    const double *density;              /* kg/m3, current; count */
+    const double *strain_increment;     /* components rows; engineering shear; objective (rigid rotation taken out) */
+    const double *deformation_gradient; /* at the end of the step, when needed; else NULL */
+    const double *velocity_gradient;    /* 1/s, when needed; else NULL */
+    const double *stress0;              /* Pa, already turned with the material's spin */
+    double *stress1;                    /* Pa, Cauchy, to be written for every item */
+    const double *state0;               /* rows in the order of the declared states, already turned; NULL without states */
+    double *state1;
+    double *dissipation; /* J per m3 of current volume in this step, with AB_GIVE_DISSIPATION; else NULL */
+    double *wave_speed;  /* m/s, P-wave; NULL in steps that do not ask */
+    uint8_t *flag;       /* set to 1 for an item that failed; zeroed by the host */
+} ab_batch;
+
+typedef struct ab_material_ops {
+    uint32_t struct_size;
+    int (*start)(void *self, ab_batch *batch);  /* optional. Before the first step: may set stress1, state1; wave_speed is always asked for.
+                                                   Without it stress starts at 0, states at `initial`, and update must give the wave speed. */
+    int (*update)(void *self, ab_batch *batch); /* from several threads at once */
+} ab_material_ops;
+
+/* ---- boundaries ------------------------------------------------------------------------------------------------------- */
+
+typedef struct ab_edges {
+    uint32_t struct_size, dimension;
+    size_t count, ld;
+    double time, dt;
+    const double *position, *normal, *displacement, *velocity; /* dimension rows; normal outwards */
+    const double *area, *density, *p_wave_speed, *s_wave_speed;
+    double *traction; /* Pa on the body, dimension rows */
+    const double *state0;
+    double *state1;
+} ab_edges;
+
+typedef struct ab_boundary_ops {
+    uint32_t struct_size;
+    int (*apply)(void *self, ab_edges *edges);
+} ab_boundary_ops;
+
+/* ---- contact ---------------------------------------------------------------------------------------------------------- */
+
+/* One body of a pair as a finder sees it. Shared nodes: grid nodes that have mass of both bodies; item i of side a and item i of
+ * side b are the same node. "Near points" are the body's own points whose basis reaches the node, listed per node:
+ * those of node i are near_start[i] .. near_start[i+1]-1. The half size of a point in direction n is sqrt(n.A.n), A its extent. */
+typedef struct ab_trace {
+    uint32_t struct_size, dimension;
+    const char *body;
+    double stiffness; /* Pa, P-wave modulus of the body's material */
+    double cell;      /* m, cell size of the grid */
+    size_t count, ld;
+    const double *position;      /* m, of the node; dimension rows */
+    const uint32_t *dof;         /* the node's number for stencils of this side */
+    const uint64_t *key;         /* a number that names the node in every step (for history) */
+    const double *mass;          /* kg (per m of thickness in plane strain) */
+    const double *mass_gradient; /* sum_p m_p G_ip, kg/m; dimension rows; NULL unless needed */
+    const double *area_vector;   /* sum_p V_p G_ip, m2 (m in plane strain), out of the body; NULL unless needed */
+    const size_t *near_start;    /* count + 1; NULL unless needed */
+    size_t near_ld;
+    const double *near_position; /* m; dimension rows */
+    const double *near_extent;   /* m2; symmetric: (xx, yy, xy) or (xx, yy, zz, xy, yz, zx) */
+} ab_trace;
+
+/* Contact points (side a, side b): v_rel = sum w_a v_a - sum w_b v_b; the normal goes out of a into b; approaching when v_rel.n > 0.
+ * An impulse j acts on b, -j on a. */
+typedef struct ab_points {
+    uint32_t struct_size, dimension;
+    double time, dt, cell;
+    size_t count, capacity, ld; /* find sets count; ld = capacity */
+    /* written by find */
+    uint64_t *key;               /* names the point in every step, for history */
+    size_t *a_start, *b_start;   /* count + 1: stencil of point i is a_dof[a_start[i]] .. a_dof[a_start[i+1]-1] */
+    uint32_t *a_dof, *b_dof;
+    double *a_weight, *b_weight; /* sum to 1 per point and side */
+    double *normal;              /* dimension rows, unit */
+    double *gap;                 /* m, negative: penetration; 0 where it is not known */
+    double *area;                /* m2 (m in plane strain) */
+    /* given to respond */
+    const double *relative_velocity; /* m/s, dimension rows, with every impulse so far */
+    const double *normal_mass;       /* kg, effective mass along the normal; 0: both sides are held */
+    const double *tangential_mass;   /* kg, effective mass across the normal */
+    double *impulse;                 /* N s on b, dimension rows: in: total of this step so far; out: new total */
+    const double *state0;
+    double *state1;
+} ab_points;
+
+typedef struct ab_contact_ops {
+    uint32_t struct_size;
+    int (*find)(void *self, const ab_trace *a, const ab_trace *b, ab_points *out);        /* optional */
+    int (*respond)(void *self, ab_points *points, size_t first, size_t count);            /* optional; called until impulses stand still */
+} ab_contact_ops;
+
+/* ---- the descriptor ---------------------------------------------------------------------------------------------------- */
+
+enum ab_kind { AB_MATERIAL = 1, AB_BOUNDARY, AB_CONTACT };
+enum ab_spaces { AB_PLANE_STRAIN = 1u, AB_AXISYMMETRIC = 2u, AB_SPACE_3D = 4u };
+
+typedef struct ab_class {
+    uint32_t struct_size;
+    uint32_t kind;   /* enum ab_kind */
+    uint32_t spaces; /* or of enum ab_spaces */
+    uint32_t needs, gives;
+    uint32_t nparam, nstate;
+    const char *name, *help, *reference; /* name: what a scene writes; reference: the source of the formula */
+    const ab_param *param;
+    const ab_state *state;
+    int (*create)(const ab_host *host, const ab_value *settings, void **self); /* settings in the order of param */
+    void (*destroy)(void *self);
+    const void *ops; /* ab_material_ops, ab_boundary_ops or ab_contact_ops */
+} ab_class;
+
+typedef struct ab_plugin {
+    uint32_t struct_size;
+    uint32_t abi_major, abi_minor;
+    uint32_t size_of_double, size_of_size_t;
+    uint32_t class_count;
+    const char *name, *version, *licence;
+    const ab_class *const *classes; /* class_count pointers */
+} ab_plugin;
+
+extern AB_EXPORT const ab_plugin abut_plugin_v1;
+
+/* First fields of a descriptor: { AB_PLUGIN_HEAD(count), "name", "1.0", "MIT", classes } */
+#define AB_PLUGIN_HEAD(classes) \
+    (uint32_t)sizeof(ab_plugin), AB_ABI_MAJOR, AB_ABI_MINOR, (uint32_t)sizeof(double), (uint32_t)sizeof(size_t), (uint32_t)(classes)
+
+#ifdef __cplusplus
+}
+#endif
+#endif
