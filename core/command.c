@@ -1,0 +1,114 @@
+/* command.c: the table of commands, and what is common to them: finding the command, its help, reading the scene. */
+#include "core/commands.h"
+
+#include <string.h>
+
+#include "core/nearest.h"
+
+#if defined(__clang__)
+#define COMPILER "clang " __clang_version__
+#else
+#define COMPILER "gcc " __VERSION__
+#endif
+
+static int command_plugins(const ab_command_line *line) {
+    char *words[8] = {(char[]){"plugins"}};
+    for (int i = 0; i < line->word_count; i++) words[i + 1] = line->words[i];
+    return ab_command_plugins(line->word_count + 1, words, line->plugin_path);
+}
+
+static int command_version(const ab_command_line *line) {
+    (void)line;
+    printf("abut %s\nplugin interface %u.%u\nbuilt for %s by %s\n", ABUT_VERSION, AB_ABI_MAJOR, AB_ABI_MINOR,
+           ABUT_ARCH[0] ? ABUT_ARCH : "any machine", COMPILER);
+    return AB_OK;
+}
+
+static int command_help(const ab_command_line *line);
+
+static const ab_command commands[] = {
+    {"run", "SCENE", "run a scene; results.h5, results.xdmf, history.csv and summary.json land in the results folder",
+     "Progress goes to standard error: a bar on a terminal, plain lines elsewhere. Results that are there already are replaced.\n"
+     "  abut run cases/block_on_incline/scene.yaml -o results/incline --set constants.mu=0.3",
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_STRICT, 1, 1,
+     ab_command_run},
+    {"check", "SCENE", "read a scene, load its plugins, say all that is wrong; nothing runs, nothing is written", NULL,
+     AB_OPTION_SET | AB_OPTION_PLUGIN_PATH, 1, 1, ab_command_check},
+    {"plan", "SCENE", "what this scene needs, and what it will not pay for: points, memory, passes, plugins, steps, time", NULL,
+     AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_JSON, 1, 1, ab_command_plan},
+    {"plugins", "[show NAME]", "list the plugins found, or tell all about one: settings with unit, range, default",
+     "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 6,
+     command_plugins},
+    {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
+    {"help", "[COMMAND]", "this help, or more about one command", NULL, 0, 0, 1, command_help},
+    {"trade", "SCENE", "accuracy against cost", NULL, 0, 0, 0, NULL},
+    {"extremes", "SCENE", "how far a setting goes", NULL, 0, 0, 0, NULL},
+    {.name = NULL},
+};
+enum { command_count = sizeof commands / sizeof *commands - 1 };
+
+/* The command of that name, or NULL with the reason printed. */
+static const ab_command *find_command(const char *name) {
+    const char *names[command_count];
+    for (size_t i = 0; i < command_count; i++) {
+        names[i] = commands[i].run ? commands[i].name : NULL;
+        if (strcmp(commands[i].name, name)) continue;
+        if (commands[i].run) return &commands[i];
+        fprintf(stderr, "abut: error: '%s' is not in this version yet; `abut help` lists what is\n", name);
+        return NULL;
+    }
+    const char *near = ab_nearest(name, names, command_count);
+    if (near)
+        fprintf(stderr, "abut: error: unknown command '%s'; did you mean '%s'?\n", name, near);
+    else
+        fprintf(stderr, "abut: error: unknown command '%s'; `abut help` lists the commands\n", name);
+    return NULL;
+}
+
+static int command_help(const ab_command_line *line) {
+    const ab_command *command = line->word_count ? find_command(line->words[0]) : NULL;
+    if (line->word_count && !command) return AB_BAD_INPUT;
+    ab_command_help(commands, command, stdout);
+    return AB_OK;
+}
+
+/* What was printed has to arrive, or the exit status says that it did not. */
+static int flushed(int status) {
+    if (fflush(stdout) == 0 && !ferror(stdout)) return status;
+    fprintf(stderr, "abut: error: standard output could not be written\n");
+    return status == AB_OK ? AB_FAILED : status;
+}
+
+int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count) {
+    if (argc < 2) {
+        ab_command_help(commands, NULL, stderr);
+        return AB_BAD_INPUT;
+    }
+    const char *name = argv[1];
+    if (!strcmp(name, "--help") || !strcmp(name, "-h")) name = "help";
+    if (!strcmp(name, "--version")) name = "version";
+    const ab_command *command = find_command(name);
+    if (!command) return AB_BAD_INPUT;
+    ab_command_line line = {.methods = methods, .method_count = method_count};
+    int status = ab_command_line_read(command, argc - 1, argv + 1, &line);
+    if (status == AB_OK) {
+        status = command->run(&line);
+    } else if (status < 0) {
+        ab_command_help(commands, strcmp(command->name, "help") ? command : NULL, stdout);
+        status = AB_OK;
+    }
+    ab_command_line_clear(&line);
+    return flushed(status);
+}
+
+ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report) {
+    *scene = NULL;
+    *registry = NULL;
+    ab_status status = ab_registry_create(line->plugin_path, registry, report);
+    if (status == AB_OK) status = ab_scene_read(line->words[0], line->overrides, line->override_count, *registry, scene, report);
+    if (status == AB_OK) return AB_OK;
+    ab_report_print(report, stderr);
+    ab_registry_destroy(*registry);
+    *registry = NULL;
+    return status;
+}

@@ -1,0 +1,38 @@
+/* command_check.c: abut check: everything that can be known to be wrong without running. */
+#include "core/commands.h"
+
+static void count(FILE *stream, const char *before, size_t number, const char *one, const char *many) {
+    if (number) fprintf(stream, "%s%zu %s", before, number, number == 1 ? one : many);
+}
+
+static void print_ok(const char *path, const ab_scene *scene, size_t warnings) {
+    printf("%s: ok: ", path);
+    count(stdout, "", scene->body_count, "body", "bodies");
+    count(stdout, ", ", scene->material_count, "material", "materials");
+    count(stdout, ", ", scene->contact_count, "contact", "contacts");
+    count(stdout, ", ", scene->load_count, "load", "loads");
+    count(stdout, ", ", scene->monitor_count, "monitor", "monitors");
+    count(stdout, ", ", scene->expect_count, "expect", "expects");
+    count(stdout, "; ", warnings, "warning", "warnings");
+    printf("\n");
+}
+
+int ab_command_check(const ab_command_line *line) {
+    ab_report *report = ab_report_create();
+    if (!report) {
+        fprintf(stderr, "abut: error: no memory\n");
+        return AB_FAILED;
+    }
+    ab_registry *registry = NULL;
+    ab_scene *scene = NULL;
+    const ab_status status = ab_command_scene(line, &registry, &scene, report);
+    if (status == AB_OK) {
+        const size_t warnings = ab_report_warnings(report);
+        ab_report_print(report, stderr);
+        print_ok(line->words[0], scene, warnings);
+        ab_scene_destroy(scene);
+        ab_registry_destroy(registry);
+    }
+    ab_report_destroy(report);
+    return (int)status;
+}

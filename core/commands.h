@@ -1,0 +1,61 @@
+/* commands.h: the command line: which commands there are, which options each takes, and the functions behind them. main.c joins them. */
+#ifndef AB_COMMANDS_H
+#define AB_COMMANDS_H
+
+#include "core/scheduler.h"
+
+enum ab_option_bits { /* options a command takes */
+                      AB_OPTION_OUTPUT = 1u,
+                      AB_OPTION_THREADS = 2u,
+                      AB_OPTION_SET = 4u,
+                      AB_OPTION_PLUGIN_PATH = 8u,
+                      AB_OPTION_QUIET = 16u,
+                      AB_OPTION_STRICT = 32u,
+                      AB_OPTION_JSON = 64u
+};
+
+/* A command line once it is understood. Texts are borrowed from argv. */
+typedef struct ab_command_line {
+    const char *output;      /* -o; NULL: not given */
+    int threads;             /* -j; 0: not given */
+    const char *plugin_path; /* --plugin-path; NULL: not given */
+    bool quiet, strict, json;
+    ab_override *overrides; /* --set, in order */
+    size_t override_count;
+    char **words; /* what is not an option: the scene, or the words of `abut plugins` */
+    int word_count;
+    const ab_method *methods; /* main's table: how a body of each method is made */
+    size_t method_count;
+} ab_command_line;
+
+typedef struct ab_command {
+    const char *name, *words;                /* "run", "SCENE" */
+    const char *summary;                     /* one line */
+    const char *help;                        /* the rest, shown by `abut help NAME` */
+    unsigned options;                        /* or of enum ab_option_bits */
+    int fewest, most;                        /* words it takes */
+    int (*run)(const ab_command_line *line); /* returns the exit status; NULL: not in this version */
+} ab_command;
+
+/* Reads argv with main's table of methods, runs the command, returns the exit status (docs/user.md). Commands end in a NULL name. */
+int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count);
+
+/* argv[1..argc-1] are the options and words behind the command. Returns AB_OK, or AB_BAD_INPUT with the reason printed, or -1 where the
+ * command's help is asked for. Release with ab_command_line_clear either way. */
+int ab_command_line_read(const ab_command *command, int argc, char **argv, ab_command_line *line);
+void ab_command_line_clear(ab_command_line *line);
+
+/* Help on one command, or (NULL) on the program. */
+void ab_command_help(const ab_command *commands, const ab_command *command, FILE *stream);
+
+/* Reads the scene that the line names, with its plugins. On failure the report is printed and both are NULL. */
+ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report);
+
+int ab_command_run(const ab_command_line *line);
+int ab_command_check(const ab_command_line *line);
+int ab_command_plan(const ab_command_line *line);
+
+/* core/command_plugins.c: argv[0] is "plugins", then the words behind it. */
+int ab_command_plugins(int argc, char **argv, const char *plugin_path);
+
+#endif
