@@ -45,6 +45,21 @@ typedef struct ab_dofs {
     size_t velocity_stride, old_stride, mass_stride;
 } ab_dofs;
 
+/* The background grid is one for all bodies, cut into tiles of AB_TILE x AB_TILE nodes. Node (i, j) stands at from + cell*(i, j); tile
+ * (I, J) holds nodes i = AB_TILE*I .. AB_TILE*I + AB_TILE-1. A body lists only the tiles where it has mass. */
+enum { AB_TILE = 8, AB_TILE_NODES = AB_TILE * AB_TILE };
+static inline uint64_t ab_tile_key(int32_t tx, int32_t ty) { return ((uint64_t)(uint32_t)(ty + 0x40000000) << 32) | (uint32_t)(tx + 0x40000000); }
+static inline int32_t ab_tile_x(uint64_t key) { return (int32_t)((uint32_t)key - 0x40000000u); }
+static inline int32_t ab_tile_y(uint64_t key) { return (int32_t)((uint32_t)(key >> 32) - 0x40000000u); }
+
+typedef struct ab_node_tiles { /* borrowed; valid until the next begin */
+    size_t count;
+    const uint64_t *key;    /* ascending */
+    const double *mass;     /* of node n of tile k: mass[(k*AB_TILE_NODES + n)*stride], n = (j%AB_TILE)*AB_TILE + i%AB_TILE */
+    size_t stride;
+    uint64_t version;       /* another number when the list is another */
+} ab_node_tiles;
+
 typedef struct ab_plan_body { /* what a body will cost; filled by plan() */
     size_t points, cells, tiles;
     size_t bytes, bytes_per_point;
@@ -64,6 +79,12 @@ typedef struct ab_domain_ops {
     ab_status (*remap)(ab_domain *, const ab_step *, ab_report *);      /* NULL unless the body maps velocities back (MUSL) */
     ab_status (*stress)(ab_domain *, const ab_step *, ab_report *);     /* strain from dof velocities, stress, volumes */
     void (*ledger)(const ab_domain *, ab_energy *, ab_motion *);        /* totals so far; friction and contact left at 0 */
+    /* contact */
+    void (*node_tiles)(const ab_domain *, ab_node_tiles *);             /* the body's mass on the grid at the start of the step */
+    /* What a finder sees of the body at `count` nodes (number = tile*AB_TILE_NODES + n, ascending, from node_tiles); needs: AB_NEED_* bits. Arrays stay the
+     * domain's and are valid until the next call. */
+    ab_status (*trace)(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
+    void (*dofs)(const ab_domain *, ab_dofs *);
     /* results */
     size_t (*count)(const ab_domain *);                                 /* points (or nodes) that can be written now */
     const ab_field *(*fields)(const ab_domain *, size_t *count);

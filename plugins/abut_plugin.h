@@ -186,7 +186,9 @@ typedef struct ab_trace {
     double cell;      /* m, cell size of the grid */
     size_t count, ld;
     const double *position;      /* m, of the node; dimension rows */
-    const uint32_t *dof;         /* the node's number for stencils of this side */
+    const size_t *stencil_start; /* count + 1: on which dofs the body's velocity at node i hangs, and with which weights (a material-point */
+    const uint32_t *stencil_dof; /* body: the node itself, weight 1; a finite-element body: the nodes of its elements around it) */
+    const double *stencil_weight;
     const uint64_t *key;         /* a number that names the node in every step (for history) */
     const double *mass;          /* kg (per m of thickness in plane strain) */
     const double *mass_gradient; /* sum_p m_p G_ip, kg/m; dimension rows; NULL unless needed */

@@ -1,0 +1,73 @@
+/* vector.h: eight doubles at a time by the compiler's vector extensions; the same source serves AVX-512, AVX2, SSE2 and NEON. */
+#ifndef AB_VECTOR_H
+#define AB_VECTOR_H
+
+#include <stdint.h>
+
+typedef double v8 __attribute__((vector_size(64)));
+typedef double v8_loose __attribute__((vector_size(64), aligned(8))); /* for loads from any double */
+typedef double v4 __attribute__((vector_size(32)));
+typedef double v4_loose __attribute__((vector_size(32), aligned(8)));
+typedef int64_t v8_mask __attribute__((vector_size(64)));
+
+static inline v8 v8_set(double a) { return (v8){a, a, a, a, a, a, a, a}; }
+static inline v4 v4_set(double a) { return (v4){a, a, a, a}; }
+static inline v8 v8_load(const double *p) { return *(const v8_loose *)p; }
+static inline v4 v4_load(const double *p) { return *(const v4_loose *)p; }
+static inline void v8_store(double *p, v8 a) { *(v8_loose *)p = a; }
+static inline void v4_store(double *p, v4 a) { *(v4_loose *)p = a; }
+static inline v8 v8_select(v8_mask c, v8 a, v8 b) { return (v8)((c & (v8_mask)a) | (~c & (v8_mask)b)); }
+static inline v8 v8_min(v8 a, v8 b) { return v8_select(a < b, a, b); }
+static inline v8 v8_max(v8 a, v8 b) { return v8_select(a > b, a, b); }
+static inline v8 v8_floor(v8 a) /* |a| < 2^51 */
+{
+    const v8 magic = v8_set(0x1.8p52);
+    const v8 nearest = (a + magic) - magic;
+    return nearest - v8_select(nearest > a, v8_set(1.0), v8_set(0.0));
+}
+static inline double v8_sum(v8 a) /* in one fixed order */
+{
+    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+}
+static inline double v8_lowest(v8 a)
+{
+    double m = a[0];
+    for (int l = 1; l < 8; ++l) m = a[l] < m ? a[l] : m;
+    return m;
+}
+static inline double v8_highest(v8 a)
+{
+    double m = a[0];
+    for (int l = 1; l < 8; ++l) m = a[l] > m ? a[l] : m;
+    return m;
+}
+static inline v8 v8_join(v4 low, v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
+static inline v4 v8_low(v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
+static inline v4 v8_high(v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
+
+/* Rows become columns: between eight points' component c and one point's eight components. */
+static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])
+{
+#define AB_LO(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
+#define AB_HI(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
+#define AB_EVEN(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
+#define AB_ODD(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15)
+    const v8 a0 = AB_LO(r[0], r[1]), a1 = AB_HI(r[0], r[1]), a2 = AB_LO(r[2], r[3]), a3 = AB_HI(r[2], r[3]);
+    const v8 a4 = AB_LO(r[4], r[5]), a5 = AB_HI(r[4], r[5]), a6 = AB_LO(r[6], r[7]), a7 = AB_HI(r[6], r[7]);
+    const v8 b0 = AB_EVEN(a0, a2), b1 = AB_EVEN(a1, a3), b2 = AB_ODD(a0, a2), b3 = AB_ODD(a1, a3);
+    const v8 b4 = AB_EVEN(a4, a6), b5 = AB_EVEN(a5, a7), b6 = AB_ODD(a4, a6), b7 = AB_ODD(a5, a7);
+    r[0] = AB_EVEN(b0, b4);
+    r[4] = AB_ODD(b0, b4);
+    r[1] = AB_EVEN(b1, b5);
+    r[5] = AB_ODD(b1, b5);
+    r[2] = AB_EVEN(b2, b6);
+    r[6] = AB_ODD(b2, b6);
+    r[3] = AB_EVEN(b3, b7);
+    r[7] = AB_ODD(b3, b7);
+#undef AB_LO
+#undef AB_HI
+#undef AB_EVEN
+#undef AB_ODD
+}
+
+#endif
