@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "core/nearest.h"
+#include "core/suggest.h"
 
 #if defined(__clang__)
 #define COMPILER "clang " __clang_version__
@@ -40,7 +40,7 @@ static const ab_command commands[] = {
      "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 6,
      command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
-    {"help", "[COMMAND]", "this help, or more about one command", NULL, 0, 0, 1, command_help},
+    {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
     {"trade", "SCENE", "accuracy against cost", NULL, 0, 0, 0, NULL},
     {"extremes", "SCENE", "how far a setting goes", NULL, 0, 0, 0, NULL},
     {.name = NULL},
@@ -57,7 +57,7 @@ static const ab_command *find_command(const char *name) {
         fprintf(stderr, "abut: error: '%s' is not in this version yet; `abut help` lists what is\n", name);
         return NULL;
     }
-    const char *near = ab_nearest(name, names, command_count);
+    const char *near = ab_suggest(name, names, command_count);
     if (near)
         fprintf(stderr, "abut: error: unknown command '%s'; did you mean '%s'?\n", name, near);
     else
@@ -66,6 +66,10 @@ static const ab_command *find_command(const char *name) {
 }
 
 static int command_help(const ab_command_line *line) {
+    if (line->word_count && !strcmp(line->words[0], "scene")) {
+        ab_scene_write_reference(stdout);
+        return AB_OK;
+    }
     const ab_command *command = line->word_count ? find_command(line->words[0]) : NULL;
     if (line->word_count && !command) return AB_BAD_INPUT;
     ab_command_help(commands, command, stdout);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/nearest.h"
+#include "core/suggest.h"
 
 enum { most_threads = 4096 };
 
@@ -89,7 +89,7 @@ static int unknown_option(const ab_command *command, const char *given) {
     names[count++] = "help";
     char bare[64], remedy[160];
     snprintf(bare, sizeof bare, "%.*s", (int)strcspn(given + strspn(given, "-"), "="), given + strspn(given, "-"));
-    const char *near = strlen(bare) > 1 ? ab_nearest(bare, names, count) : NULL;
+    const char *near = strlen(bare) > 1 ? ab_suggest(bare, names, count) : NULL;
     if (near)
         snprintf(remedy, sizeof remedy, "did you mean '--%s'?", near);
     else
