@@ -2,6 +2,8 @@
 #ifndef AB_PLUGIN_HOST_H
 #define AB_PLUGIN_HOST_H
 
+#include <stdatomic.h>
+
 #include "abut_plugin.h"
 #include "core/report.h"
 
@@ -23,7 +25,9 @@ typedef struct ab_loaded_class {
  * lives) when a class of the kind is looked up and not known yet.
  * How a file tells its class without being loaded: by its name: classes of kind K live in files named <anything>.so under the folders
  * `material/`, `boundary/`, `contact/` of each search path entry, or directly in the entry; the class name with '-' as '_' is tried first
- * (linear-elastic -> material/linear_elastic.so); only if that misses are the other files of the entry opened, one after the other. */
+ * (linear-elastic -> material/linear_elastic.so), in every entry; only if that misses are the other files of the kind opened.
+ * Strict: two files among those opened that offer the same class are an error that names both (the same file met twice is one), and so is any
+ * opened file that is refused. Empty entries of a search path are passed over, so the working directory is searched only where it is named. */
 ab_status ab_registry_create(const char *paths, ab_registry **registry, ab_report *report);
 void ab_registry_destroy(ab_registry *registry);
 
@@ -31,15 +35,17 @@ void ab_registry_destroy(ab_registry *registry);
 const ab_loaded_class *ab_registry_find(ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report);
 
 /* Every plugin on the search path, loaded (for `abut plugins` and for docs). Refused files are reported as errors. */
+size_t ab_registry_paths(const ab_registry *registry, char *text, size_t size); /* "DIR, DIR (not there)"; returns the count */
 ab_status ab_registry_load_all(ab_registry *registry, ab_report *report);
 size_t ab_registry_count(const ab_registry *registry);
 const ab_loaded_class *ab_registry_class(const ab_registry *registry, size_t index); /* in order of kind, name */
 
-/* Host services for create(). One ab_service per instance; messages are kept for the error that follows. */
+/* Host services for create(). One ab_service per instance, which must not move afterwards; messages are kept for the error that follows. */
 typedef struct ab_service {
-    ab_host host;           /* pass &service.host to create */
+    ab_host host;           /* pass &service.host to create; whoever has a finder sets host.reserve (and its context) before */
     char message[512];      /* last message */
     char who[96];           /* "material 'soil' (von-mises)" */
+    atomic_flag busy;       /* while a thread writes message */
 } ab_service;
 void ab_service_init(ab_service *service, const char *who);
 
