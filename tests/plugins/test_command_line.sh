@@ -1,0 +1,82 @@
+#!/bin/bash
+# The command line: what is wrong is said with a remedy, exits 2 and writes nothing. test_command_line.sh BUILD
+set -u
+build=$(realpath "${1:?the build folder}")
+scratch=${ABUT_SCRATCH:-$(mktemp -d)}
+mkdir -p "$scratch/place"
+scene=$(realpath cases/block_on_incline/scene.yaml)
+cd "$scratch/place" || exit 1
+wrong=0
+
+# expect STATUS 'PATTERN' ARGUMENT...: the exit status, and the pattern in what is printed (either stream)
+expect() {
+    local status=$1 pattern=$2 printed actual
+    shift 2
+    printed=$("$build/abut" "$@" 2>&1 </dev/null)
+    actual=$?
+    if [ $actual -ne "$status" ] || ! grep -qE -- "$pattern" <<<"$printed"; then
+        wrong=1
+        printf 'abut %s\n  exit %d, wanted %d; wanted to read: %s\n%s\n' "$*" $actual "$status" "$pattern" "$(head -n 8 <<<"$printed")"
+    fi
+}
+
+expect 2 '^Usage: abut COMMAND'
+expect 0 '^Usage: abut COMMAND' --help
+expect 0 '^Usage: abut COMMAND' help
+for command in run check plan plugins version help; do
+    expect 0 "^Usage: abut $command" help $command
+    [ $command = help ] || expect 0 "^Usage: abut $command" $command --help
+done
+expect 0 'results/NAME' help run
+expect 0 '^abut [0-9]+\.[0-9]+\.[0-9]+$' version
+expect 0 '^abut [0-9]' --version
+expect 2 "unknown command 'rum'; did you mean 'run'" rum x
+expect 2 "unknown command 'xyzzy'; .abut help. lists" xyzzy
+expect 2 "'trade' is not in this version yet" trade "$scene"
+expect 2 "'extremes' is not in this version yet" extremes "$scene"
+expect 2 'SCENE missing; usage: abut run SCENE' run
+expect 2 "one word too many: 'b'" run a b
+expect 2 "unknown option '--strcit'; did you mean '--strict'" run "$scene" --strcit
+expect 2 "unknown option '-z'" run "$scene" -z
+expect 2 "unknown option '--output'" check "$scene" --output x
+expect 2 "option '-o' wants a value" run "$scene" -o
+expect 2 "wants the name of a folder" run "$scene" -o ''
+for threads in 0 -1 two 1.5 4097 99999999999999999999 ''; do
+    expect 2 'number of threads from 1 to 4096' run "$scene" -j "$threads"
+done
+expect 2 "wants PATH=VALUE, not 'constants.mu'" run "$scene" --set constants.mu
+expect 2 "wants PATH=VALUE, not '=1'" run "$scene" --set =1
+expect 2 'error' run no/such/scene.yaml
+expect 2 'no/such/scene.yaml' check no/such/scene.yaml
+expect 2 'error' run "$scene/.."
+expect 2 'error: .*frction' run "$scene" --set 'contact[0].frction=1'
+expect 2 "did you mean 'friction'" check "$scene" --set 'contact[0].frction=1'
+expect 2 'error' run "$scene" --set 'contact[7].friction=1'
+expect 2 'error' run "$scene" --set 'contact[0].algorithm=multi-velocty'
+expect 2 'error' run "$scene" --set 'constants.mu=oops('
+expect 0 'scene.yaml: ok: 2 bodies, 2 materials, 1 contact' check "$scene"
+expect 0 'scene.yaml: ok' check "$scene" --set constants.mu=0.3 --set 'bodies.block.fill.per_cell=4'
+expect 0 'block' plan "$scene"
+expect 0 '^\{' plan "$scene" --json
+expect 0 'multi-velocity' plugins
+
+if [ -n "$(ls -A .)" ]; then
+    wrong=1
+    echo "something was written: $(ls -A .)"
+fi
+
+# Output that cannot be written is not a success.
+if "$build/abut" version >/dev/full 2>/dev/null; then
+    wrong=1
+    echo "abut version exits 0 although nothing could be written"
+fi
+
+# Where the results go.
+"$build/abut" run "$scene" --quiet -j 1 --set time.end=1e-3 --set expect=[] || wrong=1
+for file in results.h5 results.xdmf history.csv summary.json; do
+    [ -s "results/block_on_incline/$file" ] || { wrong=1; echo "results/block_on_incline/$file is missing"; }
+done
+"$build/abut" run "$scene" --quiet -j 1 --set time.end=1e-3 --strict -o here >/dev/null 2>&1
+[ $? -eq 3 ] || { wrong=1; echo "a missed expect with --strict does not exit 3"; }
+[ -s here/summary.json ] || { wrong=1; echo "-o here is not where the results are"; }
+exit $wrong
