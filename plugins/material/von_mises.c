@@ -10,6 +10,12 @@
 
 #include "abut_plugin.h"
 
+#if defined(__GNUC__) && !defined(__clang__)
+#define ROWS_APART _Pragma("GCC ivdep") /* ld >= count: rows do not overlap, which the compiler cannot know */
+#else
+#define ROWS_APART
+#endif
+
 typedef struct law {
     const ab_host *host;
     double lambda, two_mu, mu;                   /* Pa */
@@ -45,6 +51,7 @@ static void destroy(void *self) {
 static inline __attribute__((always_inline)) void return_to_surface(const law l, size_t count, size_t ld, size_t components,
         const double *restrict strain, const double *restrict stress0, const double *restrict plastic0, double *restrict stress1,
         double *restrict plastic1, double *restrict dissipation) {
+    ROWS_APART
     for (size_t i = 0; i < count; i++) {
         const double volumetric = l.lambda * (strain[i] + strain[ld + i] + strain[2 * ld + i]);
         const double xx = stress0[i] + (volumetric + l.two_mu * strain[i]);
