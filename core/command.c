@@ -52,7 +52,7 @@ static const ab_command *find_command(const char *name) {
     const char *names[command_count];
     for (size_t i = 0; i < command_count; i++) {
         names[i] = commands[i].run ? commands[i].name : NULL;
-        if (strcmp(commands[i].name, name)) continue;
+        if (strcmp(commands[i].name, name) != 0) continue;
         if (commands[i].run) return &commands[i];
         fprintf(stderr, "abut: error: '%s' is not in this version yet; `abut help` lists what is\n", name);
         return NULL;
