@@ -264,17 +264,17 @@ static ab_status open_kind(ab_registry *registry, uint32_t kind, const char *nam
     return status;
 }
 
-static ab_status not_found(const ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report) {
+ab_status ab_registry_not_found(const ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report) {
     static const char *const words[] = {"plugin", "material model", "boundary", "contact algorithm"};
     const char **names = calloc(registry->class_count + 1, sizeof *names);
-    char paths[2048];
+    char paths[2048], tail[600] = "";
     size_t count = 0;
     for (size_t i = 0; names && i < registry->class_count; i++)
-        if (registry->classes[i]->class_.kind == kind) names[count++] = registry->classes[i]->class_.name;
-    const char *near = names ? ab_suggest(name, names, count) : NULL;
+        if (!kind || registry->classes[i]->class_.kind == kind) names[count++] = registry->classes[i]->class_.name;
+    if (names) ab_suggest_tail(name, names, count, tail, sizeof tail - 1); /* room for a semicolon */
     ab_registry_paths(registry, paths, sizeof paths);
-    ab_report_error(report, mark, "no %s '%s'%s%s%s looked in: %s", words[kind <= AB_CONTACT ? kind : 0], name, near ? "; did you mean '" : ";",
-                    near ? near : "", near ? "'?" : "", paths);
+    ab_report_error(report, mark, "no %s '%s'%s looked in: %s", words[kind <= AB_CONTACT ? kind : 0], name,
+                    tail[0] == '\0' ? ";" : tail[strlen(tail) - 1] == '?' ? tail : strcat(tail, ";"), paths);
     free(names);
     return AB_BAD_INPUT;
 }
@@ -287,7 +287,7 @@ const ab_loaded_class *ab_registry_find(ab_registry *registry, uint32_t kind, co
         found = known_class(registry, kind, name);
         if (found) return found;
     }
-    not_found(registry, kind, name, mark, report);
+    ab_registry_not_found(registry, kind, name, mark, report);
     return NULL;
 }
 

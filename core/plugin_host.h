@@ -34,8 +34,12 @@ void ab_registry_destroy(ab_registry *registry);
 /* The class of that kind and name, loading what it takes. NULL with an error in the report: at `mark`, naming paths tried, nearest names. */
 const ab_loaded_class *ab_registry_find(ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report);
 
+/* Reports "no material model 'X'; did you mean 'Y'? looked in: ..." (kind 0: any plugin) and returns AB_BAD_INPUT. */
+ab_status ab_registry_not_found(const ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report);
+/* "DIR, DIR (not there)"; returns how many. */
+size_t ab_registry_paths(const ab_registry *registry, char *text, size_t size);
+
 /* Every plugin on the search path, loaded (for `abut plugins` and for docs). Refused files are reported as errors. */
-size_t ab_registry_paths(const ab_registry *registry, char *text, size_t size); /* "DIR, DIR (not there)"; returns the count */
 ab_status ab_registry_load_all(ab_registry *registry, ab_report *report);
 size_t ab_registry_count(const ab_registry *registry);
 const ab_loaded_class *ab_registry_class(const ab_registry *registry, size_t index); /* in order of kind, name */
