@@ -1,0 +1,39 @@
+/* frames.h: the frames of a run as HDF5 (results.h5) and the XDMF that shows them. Inside of results.c; nobody else calls it.
+ *
+ * results.h5, once a run has ended:
+ *   /frame_000000            attributes time, time_unit, step
+ *     /<body>                one group a body: position, id, body and the fields asked for
+ *     /all                   the same rows of every body one after the other, as virtual datasets: no second copy of the data
+ * Every dataset has the attributes "unit" and "components". Vectors have three components, symmetric tensors six in the order of
+ * XDMF's Tensor6 (xx xy xz yy yz zz), so that ParaView shows them as what they are. */
+#ifndef AB_FRAMES_H
+#define AB_FRAMES_H
+
+#include "core/domain.h"
+
+typedef struct ab_frames ab_frames;
+
+/* Checks the fields asked for; writes nothing yet. */
+ab_status ab_frames_create(const ab_scene *scene, ab_domain *const *domains, ab_frames **frames, ab_report *report);
+/* Clears frames of an earlier run in this folder (which exists). */
+ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *report);
+ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *report);
+/* Gathers the frames into one self-contained results.h5. Where there is no room for that the linked form stays, with a warning. */
+ab_status ab_frames_finish(ab_frames *frames, ab_report *report);
+size_t ab_frames_count(const ab_frames *frames);
+void ab_frames_destroy(ab_frames *frames);
+
+/* ---- results_xdmf.c ---- */
+
+typedef struct ab_xdmf ab_xdmf; /* one .xdmf file that grows by a grid a frame */
+
+typedef struct ab_xdmf_field { const char *name; int components; bool integer; } ab_xdmf_field;
+
+ab_status ab_xdmf_create(const char *path, const char *title, ab_xdmf **xdmf, ab_report *report);
+/* Adds a grid for /frame/group of results.h5 and writes the file anew, in one piece. topology_frame: the frame that holds `vertices`. */
+ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const char *group, double time, size_t points,
+                      const ab_xdmf_field *fields, size_t field_count, ab_report *report);
+ab_status ab_xdmf_finish(ab_xdmf *xdmf, ab_report *report); /* writes what a very long series has held back */
+void ab_xdmf_destroy(ab_xdmf *xdmf);
+
+#endif

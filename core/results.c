@@ -1,0 +1,149 @@
+/* results.c: what a run leaves, in the order in which it is made. Everything the scene asks for is found before the first file is touched;
+ * results of an earlier run in the same folder are replaced. */
+#include "core/results.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/files.h"
+#include "core/results_inner.h"
+
+static ab_status expects_begin(ab_results *results, ab_report *report) {
+    const ab_scene *scene = results->scene;
+    results->expects = calloc(scene->expect_count + 1, sizeof *results->expects);
+    results->expect_column = calloc(scene->expect_count + 1, sizeof *results->expect_column);
+    if (results->expects == NULL || results->expect_column == NULL) return ab_report_failure(report, "no memory for expects");
+    results->expect_count = scene->expect_count;
+    ab_status status = AB_OK;
+    for (size_t e = 0; e < scene->expect_count; e++) {
+        const ab_expect_spec *spec = &scene->expects[e];
+        ab_status one = ab_expect_begin(&results->expects[e], spec, report);
+        results->expect_column[e] = SIZE_MAX;
+        if (one == AB_OK && spec->monitor == SIZE_MAX) {
+            results->expect_column[e] = spec->column != NULL ? ab_column_find(scene, spec->column) : SIZE_MAX;
+            if (results->expect_column[e] == SIZE_MAX)
+                one = ab_report_error(report, spec->mark, "expect '%s': no monitor and no column '%s' in history.csv", spec->name,
+                                      spec->column != NULL ? spec->column : "");
+        }
+        if (one != AB_OK) status = one;
+    }
+    return status;
+}
+
+static ab_status find_all(ab_results *results, const ab_state_view *view, ab_report *report) {
+    const ab_scene *scene = view->scene;
+    results->motion_start = calloc(scene->body_count + 1, sizeof *results->motion_start);
+    results->energy_start = calloc(scene->body_count + 1, sizeof *results->energy_start);
+    if (results->motion_start == NULL || results->energy_start == NULL) return ab_report_failure(report, "no memory for results");
+    for (size_t b = 0; b < scene->body_count; b++) {
+        results->motion_start[b] = view->motion[b];
+        results->energy_start[b] = view->energy[b];
+    }
+    const ab_status monitors = ab_monitors_create(view, &results->monitors, report), expects = expects_begin(results, report),
+                    frames = scene->has_output ? ab_frames_create(scene, view->domains, &results->frames, report) : AB_OK;
+    return monitors != AB_OK ? monitors : expects != AB_OK ? expects : frames;
+}
+
+/* What an earlier run left under names that this one will write, or not. */
+static ab_status clear(const ab_results *results, ab_report *report) {
+    static const char *const names[] = {"summary.json", "results.h5", "results.xdmf"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        char *path = ab_path_join(results->folder, names[k]);
+        if (path == NULL) return ab_report_failure(report, "no memory for results");
+        unlink(path);
+        free(path);
+    }
+    return AB_OK;
+}
+
+ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **result, ab_report *report) {
+    ab_results *results = calloc(1, sizeof *results);
+    *result = NULL;
+    if (results == NULL || (results->folder = strdup(folder)) == NULL) {
+        free(results);
+        return ab_report_failure(report, "no memory for results");
+    }
+    results->scene = scene;
+    results->frame_step = -1;
+    ab_status status = find_all(results, view, report);
+    if (status == AB_OK) status = ab_folder_make(folder, report);
+    if (status == AB_OK) status = clear(results, report);
+    if (status == AB_OK) status = ab_history_create(folder, scene, &results->history, report);
+    if (status == AB_OK && results->frames != NULL) status = ab_frames_begin(results->frames, folder, report);
+    if (status != AB_OK) {
+        ab_results_destroy(results);
+        return status;
+    }
+    *result = results;
+    return AB_OK;
+}
+
+double ab_results_moved(const ab_results *results, const ab_state_view *view) {
+    double most = results->largest_moved;
+    for (size_t term = 0; term < AB_TERMS; term++) {
+        double start = 0;
+        for (size_t b = 0; b < view->scene->body_count; b++) start += ab_term_value(&results->energy_start[b], term);
+        most = fmax(most, fabs(ab_term_value(&view->total, term) - start));
+    }
+    return most;
+}
+
+static ab_status sample(ab_results *results, const ab_state_view *view, ab_report *report) {
+    for (size_t e = 0; e < results->expect_count; e++) {
+        ab_expect *expect = &results->expects[e];
+        if (!ab_expect_wants(expect, view->time, view->dt)) continue;
+        double value = 0;
+        if (results->expect_column[e] != SIZE_MAX) value = ab_column_value(view, results->expect_column[e]);
+        else AB_TRY(ab_monitor_value(results->monitors, expect->spec->monitor, view, &value, report));
+        ab_expect_sample(expect, view->time, value);
+    }
+    return AB_OK;
+}
+
+ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report) {
+    const ab_scene *scene = results->scene;
+    results->largest_moved = ab_results_moved(results, view);
+    AB_TRY(sample(results, view, report));
+    const long every = scene->history_every > 0 ? scene->history_every : 1;
+    if (view->step % every == 0) AB_TRY(ab_history_row(results->history, view, results->monitors, report));
+    if (results->frames == NULL) return AB_OK;
+    const double slack = 1e-6 * view->dt; /* a frame that is due at the end of this step, but for rounding */
+    if (results->frame_step < 0 || (scene->output_every > 0 && view->time >= results->next_frame - slack)) {
+        AB_TRY(ab_results_frame(results, view, report));
+        if (scene->output_every > 0) results->next_frame = scene->output_every * (floor((view->time + slack) / scene->output_every) + 1);
+    }
+    return AB_OK;
+}
+
+ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report) {
+    AB_TRY(ab_history_flush(results->history, report));
+    if (results->frames == NULL || results->frame_step == view->step) return AB_OK;
+    AB_TRY(ab_frames_write(results->frames, view->time, view->step, report));
+    results->frame_step = view->step;
+    return AB_OK;
+}
+
+/* Each part is finished whatever happens to the others; the first trouble is the answer. */
+ab_status ab_results_close(ab_results *results, const ab_state_view *view, const ab_run_facts *facts, size_t *missed, ab_report *report) {
+    const ab_status row = ab_history_row(results->history, view, results->monitors, report), history = ab_history_close(results->history, report),
+                    frames = results->frames != NULL ? ab_frames_finish(results->frames, report) : AB_OK,
+                    summary = ab_summary_write(results, view, facts, report);
+    *missed = 0;
+    for (size_t e = 0; e < results->expect_count; e++) *missed += ab_expect_end(&results->expects[e]).pass ? 0 : 1;
+    return row != AB_OK ? row : history != AB_OK ? history : frames != AB_OK ? frames : summary;
+}
+
+void ab_results_destroy(ab_results *results) {
+    if (results == NULL) return;
+    ab_monitors_destroy(results->monitors);
+    ab_history_destroy(results->history);
+    ab_frames_destroy(results->frames);
+    free(results->expects);
+    free(results->expect_column);
+    free(results->motion_start);
+    free(results->energy_start);
+    free(results->folder);
+    free(results);
+}

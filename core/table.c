@@ -1,0 +1,53 @@
+/* table.c: the few lines at the end of a run. */
+#include <math.h>
+#include <string.h>
+
+#include "core/results_inner.h"
+
+static void ledger(const ab_results *results, const ab_state_view *view, FILE *stream) {
+    const double moved = ab_results_moved(results, view);
+    fprintf(stream, "\n  %-14s %14s %14s %10s\n", "energy, J", "start", "end", "share");
+    for (size_t term = 0; term < AB_TERMS; term++) {
+        double start = 0;
+        for (size_t b = 0; b < view->scene->body_count; b++) start += ab_term_value(&results->energy_start[b], term);
+        const double end = ab_term_value(&view->total, term);
+        if (start == 0 && end == 0) continue; /* nothing of this kind in the scene */
+        fprintf(stream, "  %-14s %14.6g %14.6g\n", ab_term_name(term), start, end);
+    }
+    fprintf(stream, "  %-14s %14s %14.6g", "remainder", "", view->remainder);
+    if (moved > 0) fprintf(stream, " %9.3g%%", 100 * view->remainder / moved);
+    fprintf(stream, "\n");
+}
+
+static void contacts(const ab_state_view *view, FILE *stream) {
+    const ab_scene *scene = view->scene;
+    if (scene->contact_count == 0) return;
+    fprintf(stream, "\n  %-30s %12s %12s %8s %8s %12s\n", "contact, at the end", "normal, N", "friction, N", "points", "active", "penetration");
+    for (size_t k = 0; k < scene->contact_count; k++) {
+        const ab_contact_totals *c = &view->contacts[k];
+        char name[31];
+        snprintf(name, sizeof name, "%.13s - %.13s", scene->bodies[scene->contacts[k].body[0]].name, scene->bodies[scene->contacts[k].body[1]].name);
+        fprintf(stream, "  %-30s %12.6g %12.6g %8zu %8zu %12.4g\n", name, c->normal_force, c->friction_force, c->points, c->active, c->penetration);
+    }
+}
+
+static void expects(const ab_results *results, FILE *stream) {
+    if (results->expect_count == 0) return;
+    fprintf(stream, "\n  %-30s %14s %14s %10s %10s\n", "expect", "value", "reference", "error", "tolerance");
+    for (size_t e = 0; e < results->expect_count; e++) {
+        const ab_outcome o = ab_expect_end(&results->expects[e]);
+        fprintf(stream, "  %-30.30s %14.7g %14.7g %10.3g %10.3g  %s\n", results->expects[e].spec->name, o.value, o.reference, o.error, o.tolerance,
+                o.pass ? "pass" : "MISS");
+    }
+}
+
+void ab_results_table(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, FILE *stream) {
+    fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %zu points in %.3g s (%.3g s of processor time, %d thread%s)\n", facts->outcome, view->time, facts->steps,
+            facts->points, facts->wall_seconds, facts->cpu_seconds, facts->threads, facts->threads == 1 ? "" : "s");
+    fprintf(stream, "  %.4g million point-steps per second, %.4g MB at most\n", 1e-6 * facts->point_steps_per_second, 1e-6 * (double)facts->peak_bytes);
+    ledger(results, view, stream);
+    contacts(view, stream);
+    expects(results, stream);
+    fprintf(stream, "\n  results in %s\n", results->folder);
+    fflush(stream);
+}
