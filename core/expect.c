@@ -26,6 +26,7 @@ ab_status ab_expect_begin(ab_expect *expect, const ab_expect_spec *spec, ab_repo
 
 bool ab_expect_wants(const ab_expect *expect, double time, double dt) {
     const double slack = 1e-6 * dt; /* a window that ends on a step holds that step */
+    if (expect->norm == AB_NORM_FINAL && expect->spec->to - time > 3 * dt) return false; /* later ones will replace it */
     return time >= expect->spec->from - slack && time <= expect->spec->to + slack;
 }
 
@@ -41,6 +42,10 @@ static void between(ab_expect *e, double t0, double y0, double r0, double t1, do
     const double from = y0 > level ? t0 : crossing, to = y1 > level ? t1 : crossing;
     if (isnan(e->first_above)) e->first_above = from;
     e->last_above = to;
+}
+
+bool ab_expect_wants_last(const ab_expect *expect, double time) {
+    return expect->norm == AB_NORM_FINAL && time >= expect->spec->from && time <= expect->spec->to && (expect->samples == 0 || expect->time < time);
 }
 
 void ab_expect_sample(ab_expect *e, double t, double y) {

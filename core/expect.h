@@ -44,6 +44,8 @@ bool ab_norm_find(const char *name, ab_norm *norm);
 ab_status ab_expect_begin(ab_expect *expect, const ab_expect_spec *spec, ab_report *report);
 /* True where a sample at this time matters; dt is the step, for rounding at the ends of the window. */
 bool ab_expect_wants(const ab_expect *expect, double time, double dt);
+/* True where the run has ended at this time and the sample is still needed (`final` leaves out the early ones: they cost a reading of points). */
+bool ab_expect_wants_last(const ab_expect *expect, double time);
 void ab_expect_sample(ab_expect *expect, double time, double value);
 ab_outcome ab_expect_end(const ab_expect *expect);
 

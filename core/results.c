@@ -90,10 +90,10 @@ double ab_results_moved(const ab_results *results, const ab_state_view *view) {
     return most;
 }
 
-static ab_status sample(ab_results *results, const ab_state_view *view, ab_report *report) {
+static ab_status sample(ab_results *results, const ab_state_view *view, bool last, ab_report *report) {
     for (size_t e = 0; e < results->expect_count; e++) {
         ab_expect *expect = &results->expects[e];
-        if (!ab_expect_wants(expect, view->time, view->dt)) continue;
+        if (!(last ? ab_expect_wants_last(expect, view->time) : ab_expect_wants(expect, view->time, view->dt))) continue;
         double value = 0;
         if (results->expect_column[e] != SIZE_MAX) value = ab_column_value(view, results->expect_column[e]);
         else AB_TRY(ab_monitor_value(results->monitors, expect->spec->monitor, view, &value, report));
@@ -102,22 +102,7 @@ static ab_status sample(ab_results *results, const ab_state_view *view, ab_repor
     return AB_OK;
 }
 
-ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report) {
-    const ab_scene *scene = results->scene;
-    results->largest_moved = ab_results_moved(results, view);
-    AB_TRY(sample(results, view, report));
-    const long every = scene->history_every > 0 ? scene->history_every : 1;
-    if (view->step % every == 0) AB_TRY(ab_history_row(results->history, view, results->monitors, report));
-    if (results->frames == NULL) return AB_OK;
-    const double slack = 1e-6 * view->dt; /* a frame that is due at the end of this step, but for rounding */
-    if (results->frame_step < 0 || (scene->output_every > 0 && view->time >= results->next_frame - slack)) {
-        AB_TRY(ab_results_frame(results, view, report));
-        if (scene->output_every > 0) results->next_frame = scene->output_every * (floor((view->time + slack) / scene->output_every) + 1);
-    }
-    return AB_OK;
-}
-
-ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report) {
+static ab_status frame(ab_results *results, const ab_state_view *view, ab_report *report) {
     AB_TRY(ab_history_flush(results->history, report));
     if (results->frames == NULL || results->frame_step == view->step) return AB_OK;
     AB_TRY(ab_frames_write(results->frames, view->time, view->step, report));
@@ -125,14 +110,39 @@ ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_re
     return AB_OK;
 }
 
+ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report) {
+    const ab_scene *scene = results->scene;
+    results->largest_moved = ab_results_moved(results, view);
+    AB_TRY(sample(results, view, false, report));
+    const long every = scene->history_every > 0 ? scene->history_every : 1;
+    if (view->step % every == 0) AB_TRY(ab_history_row(results->history, view, results->monitors, report));
+    if (results->frames == NULL) return AB_OK;
+    const double slack = 1e-6 * view->dt; /* a frame that is due at the end of this step, but for rounding */
+    const bool first = results->frame_step < 0;
+    if (!first && (scene->output_every <= 0 || view->time < results->next_frame - slack)) return AB_OK;
+    if (scene->output_every > 0) results->next_frame = scene->output_every * (floor((view->time + slack) / scene->output_every) + 1);
+    return frame(results, view, report);
+}
+
+ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report) {
+    AB_TRY(sample(results, view, true, report));
+    return frame(results, view, report);
+}
+
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */
 ab_status ab_results_close(ab_results *results, const ab_state_view *view, const ab_run_facts *facts, size_t *missed, ab_report *report) {
-    const ab_status row = ab_history_row(results->history, view, results->monitors, report), history = ab_history_close(results->history, report),
-                    frames = results->frames != NULL ? ab_frames_finish(results->frames, report) : AB_OK,
-                    summary = ab_summary_write(results, view, facts, report);
+    const ab_status parts[] = {
+        sample(results, view, true, report),
+        ab_history_row(results->history, view, results->monitors, report),
+        ab_history_close(results->history, report),
+        results->frames != NULL ? ab_frames_finish(results->frames, report) : AB_OK,
+        ab_summary_write(results, view, facts, report),
+    };
     *missed = 0;
     for (size_t e = 0; e < results->expect_count; e++) *missed += ab_expect_end(&results->expects[e]).pass ? 0 : 1;
-    return row != AB_OK ? row : history != AB_OK ? history : frames != AB_OK ? frames : summary;
+    for (size_t part = 0; part < sizeof parts / sizeof *parts; part++)
+        if (parts[part] != AB_OK) return parts[part];
+    return AB_OK;
 }
 
 void ab_results_destroy(ab_results *results) {

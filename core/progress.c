@@ -1,0 +1,122 @@
+/* progress.c: one line, drawn seldom enough to cost nothing. */
+#include "core/progress.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <time.h>
+#include <unistd.h>
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void ab_progress_begin(ab_progress *p, FILE *stream, bool quiet, double time_end, size_t points) {
+    *p = (ab_progress){.stream = stream, .quiet = quiet, .time_end = time_end, .points = points, .stride = 1};
+    p->terminal = isatty(fileno(stream)) == 1;
+    p->started = p->checked = p->shown = p->rate_clock = now();
+}
+
+static int terminal_width(FILE *stream) {
+    struct winsize size;
+    return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+static void duration(double seconds, char *text, size_t size) {
+    const double whole = seconds > 0 && seconds < 1e8 ? ceil(seconds) : 0;
+    const long s = (long)whole;
+    if (!(seconds < 1e8)) snprintf(text, size, "?");
+    else if (s < 60) snprintf(text, size, "%ld s", s);
+    else if (s < 3600) snprintf(text, size, "%ld:%02ld min", s / 60, s % 60);
+    else snprintf(text, size, "%ld:%02ld h", s / 3600, s % 3600 / 60);
+}
+
+static double share(const ab_progress *p, const ab_state_view *view) {
+    const double part = p->time_end > 0 ? view->time / p->time_end : 0;
+    return part > 1 ? 1 : part > 0 ? part : 0;
+}
+
+/* Adds a part where it still fits; what matters most comes first. */
+static void add(char *line, size_t size, int width, const char *part) {
+    const size_t used = strlen(line), more = strlen(part);
+    if (used + more < size && (int)(used + more) <= width) memcpy(line + used, part, more + 1);
+}
+
+void ab_progress_format(const ab_progress *p, const ab_state_view *view, int width, char *line, size_t size) {
+    const double part = share(p, view);
+    char text[256], left[32];
+    line[0] = '\0';
+    snprintf(text, sizeof text, "%3d %%", (int)(100 * part));
+    add(line, size, width, text);
+    if (p->terminal && width >= 60) {
+        char bar[21];
+        const int full = (int)(20 * part);
+        for (int k = 0; k < 20; k++) bar[k] = k < full ? '#' : '.';
+        bar[20] = '\0';
+        snprintf(text, sizeof text, " %s", bar);
+        add(line, size, width, text);
+    }
+    duration(p->time_per_second > 0 ? (p->time_end - view->time) / p->time_per_second : INFINITY, left, sizeof left);
+    snprintf(text, sizeof text, "  t %.4g of %.4g s", view->time, p->time_end);
+    add(line, size, width, text);
+    snprintf(text, sizeof text, "  left %s", left);
+    add(line, size, width, text);
+    snprintf(text, sizeof text, "  %.3g M points/s", 1e-6 * p->points_per_second);
+    add(line, size, width, text);
+    snprintf(text, sizeof text, "  step %ld", view->step);
+    add(line, size, width, text);
+    snprintf(text, sizeof text, "  remainder %.2g J", view->remainder);
+    add(line, size, width, text);
+    snprintf(text, sizeof text, "  dt %.3g s", view->dt);
+    add(line, size, width, text);
+    if (view->limit != NULL) {
+        snprintf(text, sizeof text, " (%.200s)", view->limit);
+        add(line, size, width, text);
+    }
+}
+
+static void measure(ab_progress *p, const ab_state_view *view, double clock) {
+    const double span = clock - p->rate_clock;
+    if (span < 0.5 && p->points_per_second > 0) return; /* a rate over less jumps about */
+    if (!(span > 0)) return;
+    p->points_per_second = (double)(view->step - p->rate_step) * (double)p->points / span;
+    p->time_per_second = (view->time - p->rate_time) / span;
+    p->rate_clock = clock;
+    p->rate_step = view->step;
+    p->rate_time = view->time;
+}
+
+static void show(ab_progress *p, const ab_state_view *view, double clock) {
+    char line[512];
+    const int tenth = (int)(10 * share(p, view) + 1e-9);
+    const double since = clock - p->shown;
+    if (p->terminal ? since < 0.1 : since < 1 || (tenth == p->tenth && since < 10)) return;
+    measure(p, view, clock);
+    ab_progress_format(p, view, p->terminal ? terminal_width(p->stream) - 1 : 200, line, sizeof line);
+    if (p->terminal) fprintf(p->stream, "\r%s\033[K", line);
+    else fprintf(p->stream, "%s\n", line);
+    fflush(p->stream);
+    p->drawn = true;
+    p->shown = clock;
+    p->tenth = tenth;
+}
+
+void ab_progress_step(ab_progress *p, const ab_state_view *view) {
+    if (p->quiet || view->step < p->next) return;
+    const double clock = now(), since = clock - p->checked;
+    if (since < 0.01 && p->stride < 1 << 20) p->stride *= 2;
+    else if (since > 0.04 && p->stride > 1) p->stride /= 2;
+    p->checked = clock;
+    p->next = view->step + p->stride;
+    show(p, view, clock);
+}
+
+void ab_progress_end(ab_progress *p) {
+    if (!p->quiet && p->terminal && p->drawn) {
+        fputs("\r\033[K", p->stream);
+        fflush(p->stream);
+    }
+    p->drawn = false;
+}
