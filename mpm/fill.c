@@ -1,11 +1,20 @@
 /* fill.c: the door of the fill: checks the request, hands each shape to its filler, keeps the growing lists; and answers `where`. */
 #define _POSIX_C_SOURCE 200809L
-#include "mpm/fill_parts.h"
+#include "mpm/fill_outline.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+static ab_status fill_polygon(ab_filler *filler, const ab_shape_spec *shape)
+{
+    ab_outline outline;
+    AB_TRY(ab_outline_create(shape, &outline, filler->body, filler->report));
+    const ab_status status = ab_fill_outline(filler, shape->mark, &outline);
+    ab_outline_clear(&outline);
+    return status;
+}
 
 static ab_status fill_shape(ab_filler *filler, const ab_shape_spec *shape)
 {
@@ -13,7 +22,7 @@ static ab_status fill_shape(ab_filler *filler, const ab_shape_spec *shape)
     case AB_SHAPE_BOX: return ab_fill_box(filler, shape);
     case AB_SHAPE_DISC:
     case AB_SHAPE_RING: return ab_fill_round(filler, shape);
-    case AB_SHAPE_POLYGON:
+    case AB_SHAPE_POLYGON: return fill_polygon(filler, shape);
     case AB_SHAPE_UNION: break;
     }
     return ab_report_error(filler->report, shape->mark, "body '%s': a shape of this kind cannot be filled; use box, disc, ring, polygon or union",

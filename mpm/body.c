@@ -1,0 +1,408 @@
+/* body.c: a material-point body as the scheduler sees it: its table of functions, from creation to ledger. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "mpm/body.h"
+
+/* How often a material whose wave speed changes is asked for it, steps. */
+enum { WAVE_SPEED_EVERY = 16 };
+
+/* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen): gimp .803 with two, .664 with four points
+ * per direction. The linear basis has no positive limit (a point just behind a node); the figure is what it bears in practice. */
+static double stable_courant(const mpm_body *body)
+{
+    if (body->kernel->nodes == 3) return body->domain.spec->per_cell <= 4 ? 0.803 : 0.664;
+    return 0.664;
+}
+
+static void destroy(ab_domain *domain)
+{
+    mpm_body *body = (mpm_body *)domain;
+    if (body->self && body->material->loaded->class_.destroy) body->material->loaded->class_.destroy(body->self);
+    ab_memory_give(body->blocks, body->block_capacity * 64 * (size_t)body->rows.count);
+    ab_memory_give(body->ids, body->block_capacity * 8 * sizeof *body->ids);
+    ab_memory_give(body->spare_blocks, body->spare_capacity * 64 * (size_t)body->rows.count);
+    ab_memory_give(body->spare_ids, body->spare_capacity * 8 * sizeof *body->ids);
+    ab_memory_give(body->tiles, body->tile_capacity * sizeof *body->tiles);
+    ab_memory_give(body->keys, body->tile_capacity * sizeof *body->keys);
+    ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
+    ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
+    ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
+    ab_memory_give(body->damping_force, body->damping_capacity * 2 * AB_TILE_NODES * sizeof(double));
+    mpm_trace_destroy(body->trace);
+    free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
+}
+
+static double critical_dt(ab_domain *domain, const char **limit)
+{
+    mpm_body *body = (mpm_body *)domain;
+    snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name, body->h);
+    *limit = body->limit;
+    return stable_courant(body) * body->h / (body->wave_speed + body->largest_speed);
+}
+
+static void scatter_all(mpm_body *body)
+{
+#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
+    for (size_t k = 0; k < body->tile_count; ++k)
+        if (body->tiles[k].patch >= 0) body->kernel->scatter(body, k);
+}
+
+static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report)
+{
+    mpm_body *body = (mpm_body *)domain;
+    if (body->sort_due) {
+        AB_TRY(mpm_points_sort(body, report));
+        body->scattered = false;
+    }
+    if (!body->scattered) scatter_all(body);
+    body->scattered = false;
+    if (step->damping > 0.0 && !ab_memory_grow((void **)&body->damping_force, &body->damping_capacity, body->tile_count, 2 * AB_TILE_NODES * sizeof(double)))
+        return ab_report_failure(report, "body '%s': no memory for damping forces", domain->spec->name);
+    if (body->update != MPM_USF) mpm_loads_scatter(body, step);
+    mpm_grid_assemble(body, step, body->update != MPM_USF);
+    return AB_OK;
+}
+
+/* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
+static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report)
+{
+    body->culprit = -1;
+    body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) && (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) &&
+                           step->number % WAVE_SPEED_EVERY == 0;
+    int failed = 0;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads) reduction(| : failed)
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        if (body->tiles[k].patch < 0) continue;
+        failed |= body->kernel->stress(body, k, step, advance, body->sums + k) != 0;
+        if (fuse) body->kernel->scatter(body, k);
+    }
+    if (failed) {
+        const double *x = mpm_block(body, (size_t)(body->culprit < 0 ? 0 : body->culprit));
+        return ab_report_failure(report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m: %s; a smaller dt or a finer grid may help", body->material->name,
+                                 body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
+                                 body->service.message[0] ? body->service.message : "no reason given");
+    }
+    double fastest = 0.0;
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        if (body->tiles[k].patch < 0) continue;
+        body->energy.strain += body->sums[k].strain;
+        body->energy.plastic += body->sums[k].plastic;
+        fastest = fmax(fastest, body->sums[k].wave_speed);
+    }
+    if (body->ask_wave_speed && fastest > 0.0) body->wave_speed = fastest;
+    return AB_OK;
+}
+
+static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report)
+{
+    mpm_body *body = (mpm_body *)domain;
+    AB_TRY(stress_all(body, step, false, true, report));
+    mpm_loads_scatter(body, step);
+    mpm_grid_assemble(body, step, true);
+    return AB_OK;
+}
+
+/* A point is outside the grid: stop, naming it, or let it go where the side says outflow. */
+static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *report)
+{
+    static const char *const SIDE[AB_SIDES] = {"left", "right", "bottom", "top"};
+    for (size_t slot = 0; slot < body->block_count * 8; ++slot) {
+        if (body->ids[slot] == UINT64_MAX) continue;
+        const double *block = mpm_block(body, slot / 8) + slot % 8;
+        const double x[2] = {block[8 * ROW_NEXT], block[8 * (ROW_NEXT + 1)]}, v[2] = {block[8 * ROW_V], block[8 * (ROW_V + 1)]};
+        int side = -1;
+        for (int c = 0; c < 2; ++c) {
+            if (!(x[c] >= 0.0)) side = 2 * c;
+            if (!(x[c] <= body->span[c])) side = 2 * c + 1;
+        }
+        if (side < 0) continue;
+        if (!isfinite(x[0]) || !isfinite(x[1]))
+            return ab_report_failure(report, "body '%s': point %llu has no finite place any more at t = %.9g s (step %ld): the run has blown up; use a smaller dt, basis gimp, update musl",
+                                     body->domain.spec->name, (unsigned long long)body->ids[slot], step->time + step->dt, step->number);
+        if (body->scene->side[side] != AB_SIDE_OUTFLOW)
+            return ab_report_failure(report,
+                                     "body '%s': point %llu left the grid through its %s side at (%.6g, %.6g) m, velocity (%.4g, %.4g) m/s, t = %.9g s (step %ld); make the grid larger, "
+                                     "hold that side (roller, fixed) or say 'outflow' there",
+                                     body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0], x[1] + body->origin[1], v[0], v[1],
+                                     step->time + step->dt, step->number);
+        body->energy.outflow += 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1]);
+        body->sort_due = true;
+    }
+    return AB_OK;
+}
+
+/* Adds up the tiles' sums; sees to points that leave their tile's patch, or the grid. */
+static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *report)
+{
+    ab_motion motion = {0};
+    double kinetic = 0.0, speed2 = 0.0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    bool far = false;
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        const mpm_tile *tile = body->tiles + k;
+        if (tile->patch < 0) continue;
+        const mpm_sums *s = body->sums + k;
+        motion.mass += s->mass;
+        kinetic += s->kinetic;
+        motion.angular_momentum[2] += s->angular;
+        body->energy.potential += s->potential;
+        speed2 = fmax(speed2, s->speed2);
+        for (int c = 0; c < 2; ++c) {
+            motion.momentum[c] += s->momentum[c];
+            motion.centre[c] += s->first[c];
+            low[c] = fmin(low[c], s->low[c]);
+            high[c] = fmax(high[c], s->high[c]);
+            const double shift = body->kernel->nodes == 3 ? 0.5 : 0.0, at = (c ? tile->ty : tile->tx) * AB_TILE;
+            const double first = floor(s->low[c] * body->inverse_h - shift) - at, last = floor(s->high[c] * body->inverse_h - shift) - at;
+            if (first < -1 || last > AB_TILE) body->sort_due = true;
+            if (first < -AB_TILE || last >= 2 * AB_TILE) far = true;
+        }
+    }
+    for (int c = 0; c < 2; ++c) motion.centre[c] = motion.mass > 0.0 ? motion.centre[c] / motion.mass + body->origin[c] : 0.0;
+    motion.angular_momentum[2] += body->origin[0] * motion.momentum[1] - body->origin[1] * motion.momentum[0];
+    body->motion = motion;
+    body->energy.kinetic = kinetic;
+    body->largest_speed = sqrt(speed2);
+    if (!isfinite(kinetic)) AB_TRY(look_outside(body, step, report));
+    if (!isfinite(kinetic))
+        return ab_report_failure(report, "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown up; use a smaller dt, basis gimp, update musl",
+                                 body->domain.spec->name, step->time + step->dt, step->number);
+    if (low[0] < 0.0 || low[1] < 0.0 || high[0] > body->span[0] || high[1] > body->span[1]) AB_TRY(look_outside(body, step, report));
+    if (far)
+        return ab_report_failure(report, "body '%s': a point moved %.3g m, many cells, in the step at t = %.9g s (speed %.4g m/s): the run has blown up; use a smaller dt", body->domain.spec->name,
+                                 body->largest_speed * step->dt, step->time, body->largest_speed);
+    return AB_OK;
+}
+
+static void book_damping(mpm_body *body, const ab_step *step)
+{
+    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
+        const double *own = body->own + n * OWN_RECORD, *force = body->damping_force + 2 * n;
+        for (int c = 0; c < 2; ++c) body->energy.damping -= step->dt * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
+    }
+}
+
+static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report)
+{
+    mpm_body *body = (mpm_body *)domain;
+    mpm_loads_work(body, step);
+    if (step->damping > 0.0) book_damping(body, step);
+    const bool remap = body->update == MPM_MUSL;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
+    for (size_t k = 0; k < body->tile_count; ++k)
+        if (body->tiles[k].patch >= 0) body->kernel->finish(body, k, step, remap, body->sums + k);
+    AB_TRY(close_step(body, step, report));
+    if (body->update == MPM_USL) mpm_grid_limit_light(body);
+    return AB_OK;
+}
+
+static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report)
+{
+    (void)step, (void)report;
+    mpm_grid_assemble_remap((mpm_body *)domain);
+    return AB_OK;
+}
+
+static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report)
+{
+    mpm_body *body = (mpm_body *)domain;
+    if (body->update != MPM_USF) {
+        AB_TRY(stress_all(body, step, true, !body->sort_due, report));
+        body->scattered = !body->sort_due;
+        return AB_OK;
+    }
+    const size_t rows = 8 * (size_t)body->rows.count;
+#pragma omp parallel for schedule(static) num_threads(body->threads)
+    for (size_t b = 0; b < body->block_count; ++b) memcpy(body->blocks + b * rows + 8 * ROW_X, body->blocks + b * rows + 8 * ROW_NEXT, 16 * sizeof(double));
+    return AB_OK;
+}
+
+static void ledger(const ab_domain *domain, ab_energy *energy, ab_motion *motion)
+{
+    const mpm_body *body = (const mpm_body *)domain;
+    *energy = body->energy;
+    *motion = body->motion;
+}
+
+static void node_tiles(const ab_domain *domain, ab_node_tiles *tiles)
+{
+    const mpm_body *body = (const mpm_body *)domain;
+    *tiles = (ab_node_tiles){.count = body->tile_count, .key = body->keys, .mass = body->own + OWN_MASS, .stride = OWN_RECORD, .version = body->version};
+}
+
+static void dofs(const ab_domain *domain, ab_dofs *d)
+{
+    const mpm_body *body = (const mpm_body *)domain;
+    *d = (ab_dofs){body->own + OWN_VELOCITY, body->own + OWN_OLD, body->own + OWN_INVERSE, OWN_RECORD, OWN_RECORD, OWN_RECORD};
+}
+
+static void plan(const ab_domain *domain, ab_plan_body *p)
+{
+    const mpm_body *body = (const mpm_body *)domain;
+    memset(p, 0, sizeof *p);
+    p->points = body->points;
+    p->tiles = body->tile_count;
+    for (size_t n = 0; n < body->patch_count; ++n) p->cells += 0;
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        bool seen[AB_TILE_NODES] = {false};
+        const mpm_tile *tile = body->tiles + k;
+        for (size_t slot = (size_t)tile->first * 8; slot < (size_t)(tile->first + tile->blocks) * 8; ++slot) {
+            if (body->ids[slot] == UINT64_MAX) continue;
+            const double *x = mpm_block(body, slot / 8) + 8 * ROW_X + slot % 8;
+            const int i = (int)floor(x[0] * body->inverse_h), j = (int)floor(x[8] * body->inverse_h);
+            seen[(size_t)(((j % AB_TILE + AB_TILE) % AB_TILE) * AB_TILE + (i % AB_TILE + AB_TILE) % AB_TILE)] = true;
+        }
+        for (int c = 0; c < AB_TILE_NODES; ++c) p->cells += seen[c];
+    }
+    p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES + body->patch_capacity * 8 * PATCH_DOUBLES +
+               body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + body->damping_capacity * 16 * AB_TILE_NODES +
+               (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + sizeof *body;
+    p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
+    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s", body->rows.extent >= 0 ? ", domain extent" : "",
+             body->rows.half >= 0 ? ", domain half sizes" : "", body->rows.gradient >= 0 ? ", deformation gradient" : "");
+    const ab_class *class_ = &body->material->loaded->class_;
+    for (uint32_t s = 0; s < class_->nstate; ++s) {
+        const size_t used = strlen(p->fields);
+        snprintf(p->fields + used, sizeof p->fields - used, ", %s", class_->state[s].name);
+    }
+    if (body->birth) strncat(p->fields, ", initial position", sizeof p->fields - strlen(p->fields) - 1);
+    snprintf(p->passes, sizeof p->passes, "%s%s",
+             body->update == MPM_MUSL  ? "points to grid, grid, grid to points and back, grid, stress"
+             : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
+                                       : "points to grid, grid, stress and points to grid, grid, grid to points",
+             body->load_count ? ", tractions" : "");
+}
+
+static const ab_domain_ops OPS = {
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress, .ledger = ledger, .node_tiles = node_tiles,
+    .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+};
+static const ab_domain_ops OPS_USF = {
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .early = early, .finish = finish, .stress = stress, .ledger = ledger,
+    .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+};
+static const ab_domain_ops OPS_MUSL = {
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .remap = remap, .stress = stress, .ledger = ledger,
+    .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+};
+
+/* The material before the first step: initial states, initial stress where it has one, wave speed. */
+static ab_status start_material(mpm_body *body, ab_report *report)
+{
+    const ab_loaded_class *loaded = body->material->loaded;
+    char who[96];
+    snprintf(who, sizeof who, "material '%s' (%s)", body->material->name, loaded->class_.name);
+    ab_service_init(&body->service, who);
+    if (loaded->class_.create && loaded->class_.create(&body->service.host, body->material->settings, &body->self) != 0)
+        return ab_report_error(report, body->material->mark, "material '%s' refused its settings: %s", body->material->name, body->service.message[0] ? body->service.message : "no reason given");
+    const mpm_rows rows = body->rows;
+    double zero[9][8] __attribute__((aligned(64))) = {{0}}, unit[5][8] __attribute__((aligned(64))) = {{0}}, density[8], speed[8], dissipation[8];
+    double stress1[4][8] __attribute__((aligned(64))), state0[MAX_STATE][8] __attribute__((aligned(64))), state1[MAX_STATE][8] __attribute__((aligned(64)));
+    for (int l = 0; l < 8; ++l) {
+        density[l] = body->material->density;
+        speed[l] = 0.0;
+        unit[0][l] = unit[3][l] = unit[4][l] = 1.0;
+    }
+    int row = 0;
+    for (uint32_t s = 0; s < loaded->class_.nstate; ++s) {
+        const uint32_t shape = loaded->class_.state[s].shape;
+        const int components = shape == AB_VECTOR ? 2 : shape == AB_SYMMETRIC ? 4 : shape == AB_FULL ? 5 : 1;
+        for (int c = 0; c < components; ++c, ++row)
+            for (int l = 0; l < 8; ++l) state0[row][l] = state1[row][l] = loaded->class_.state[s].initial;
+    }
+    memset(stress1, 0, sizeof stress1);
+    uint8_t flag[8] = {0};
+    ab_batch batch = {.struct_size = sizeof batch, .dimension = 2, .components = 4, .count = 8, .ld = 8, .density = density, .strain_increment = zero[0],
+                      .deformation_gradient = unit[0], .velocity_gradient = zero[4], .stress0 = zero[0], .stress1 = stress1[0], .state0 = rows.states ? state0[0] : NULL,
+                      .state1 = rows.states ? state1[0] : NULL, .dissipation = (loaded->class_.gives & AB_GIVE_DISSIPATION) ? dissipation : NULL, .wave_speed = speed, .flag = flag};
+    int (*call)(void *, ab_batch *) = loaded->material.start ? loaded->material.start : loaded->material.update;
+    const int code = call(body->self, &batch);
+    if (code != 0 || !(speed[0] > 0.0) || !isfinite(speed[0]))
+        return ab_report_error(report, body->material->mark, "material '%s' (%s) could not start: %s", body->material->name, loaded->class_.name,
+                               body->service.message[0] ? body->service.message : "it gives no wave speed");
+    body->wave_speed = speed[0];
+    body->modulus = speed[0] * speed[0] * body->material->density;
+    for (size_t b = 0; b < body->block_count; ++b) {
+        double *block = mpm_block(body, b);
+        for (int c = 0; c < 4; ++c) memcpy(block + 8 * (ROW_STRESS + c), stress1[c], 8 * sizeof(double));
+        for (int s = 0; s < rows.states; ++s) memcpy(block + 8 * (rows.state + s), state1[s], 8 * sizeof(double));
+    }
+    return AB_OK;
+}
+
+/* Energy and motion before the first step. */
+static void measure(mpm_body *body)
+{
+    for (size_t slot = 0; slot < body->block_count * 8; ++slot) {
+        const double *p = mpm_block(body, slot / 8) + slot % 8;
+        const double m = p[8 * ROW_MASS], x = p[8 * ROW_X] + body->origin[0], y = p[8 * (ROW_X + 1)] + body->origin[1], vx = p[8 * ROW_V], vy = p[8 * (ROW_V + 1)];
+        body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy);
+        body->motion.mass += m;
+        body->motion.momentum[0] += m * vx;
+        body->motion.momentum[1] += m * vy;
+        body->motion.angular_momentum[2] += m * (x * vy - y * vx);
+        body->motion.centre[0] += m * x;
+        body->motion.centre[1] += m * y;
+        body->largest_speed = fmax(body->largest_speed, sqrt(vx * vx + vy * vy));
+    }
+    for (int c = 0; c < 2; ++c) body->motion.centre[c] /= body->motion.mass;
+}
+
+/* Displacements need the places of the start: only where something asks for them. */
+static bool wants_birth(const mpm_body *body)
+{
+    const ab_scene *scene = body->scene;
+    for (size_t f = 0; f < scene->output_field_count; ++f)
+        if (!strcmp(scene->output_fields[f], "displacement")) return true;
+    for (size_t m = 0; m < scene->monitor_count; ++m)
+        if (scene->monitors[m].body == (int)body->domain.index && !strncmp(scene->monitors[m].value, "displacement", 12)) return true;
+    return false;
+}
+
+ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain **domain, ab_report *report)
+{
+    const ab_body_spec *spec = scene->bodies + index;
+    mpm_body *body = calloc(1, sizeof *body);
+    if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
+    body->kernel = !strcmp(spec->basis, "linear") ? &mpm_kernel_linear : &mpm_kernel_gimp;
+    body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
+    body->domain = (ab_domain){.ops = body->update == MPM_USF ? &OPS_USF : body->update == MPM_USL ? &OPS : &OPS_MUSL, .spec = spec, .dimension = 2, .index = index};
+    body->scene = scene;
+    body->flip = spec->flip;
+    body->contiguous = spec->contiguous;
+    body->gravity = spec->gravity;
+    body->threads = threads;
+    body->h = scene->grid_cell;
+    body->inverse_h = 1.0 / body->h;
+    for (int c = 0; c < 2; ++c) {
+        body->origin[c] = scene->grid_from[c];
+        body->span[c] = scene->grid_cells[c] * body->h;
+    }
+    body->material = scene->materials + spec->material;
+    mpm_rows_plan(body);
+    ab_fill *fill = NULL;
+    ab_status status = AB_OK;
+    if (body->rows.states > MAX_STATE)
+        status = ab_report_error(report, body->material->mark, "material '%s' keeps %d numbers per point; at most %d are possible", body->material->name, body->rows.states, MAX_STATE);
+    if (status == AB_OK) status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
+    if (status == AB_OK) status = mpm_points_insert(body, fill, report);
+    if (status == AB_OK) status = start_material(body, report);
+    if (status == AB_OK) status = mpm_loads_create(body, fill, report);
+    if (status == AB_OK && wants_birth(body)) {
+        body->birth = malloc(2 * fill->count * sizeof *body->birth);
+        if (!body->birth) status = ab_report_failure(report, "no memory for the initial places of body '%s'", spec->name);
+        for (size_t p = 0; body->birth && p < fill->count; ++p) body->birth[2 * p] = fill->x[p], body->birth[2 * p + 1] = fill->y[p];
+    }
+    if (status == AB_OK) status = mpm_fields_create(body, report);
+    ab_fill_destroy(fill);
+    if (status != AB_OK) {
+        destroy(&body->domain);
+        return status;
+    }
+    measure(body);
+    *domain = &body->domain;
+    return AB_OK;
+}

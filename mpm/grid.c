@@ -1,0 +1,146 @@
+/* grid.c: what happens on the nodes: adding up the patches, trial velocities, sides, and handing velocities to the passes over points. */
+#include <math.h>
+#include <string.h>
+
+#include "mpm/body.h"
+
+/* Adds to sum[node*lanes + c] what the nine patches around hold of this tile's own nodes. A patch reaches one node before and three nodes behind its tile. */
+static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum)
+{
+    for (int s = 0; s < 9; ++s) {
+        if (tile->around[s] < 0) continue;
+        const mpm_tile *from = body->tiles + tile->around[s];
+        if (from->patch < 0) continue;
+        const int dx = s % 3 - 1, dy = s / 3 - 1;
+        const int i0 = dx < 0 ? 0 : dx > 0 ? AB_TILE - 1 : 0, i1 = dx < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const int j0 = dy < 0 ? 0 : dy > 0 ? AB_TILE - 1 : 0, j1 = dy < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const double *patch = body->patches + (size_t)from->patch * PATCH_DOUBLES;
+        for (int j = j0; j < j1; ++j) {
+            const double *row = patch + lanes * ((j - dy * AB_TILE + 1) * PATCH + i0 - dx * AB_TILE + 1);
+            double *own = sum + lanes * (j * AB_TILE + i0);
+            for (int k = 0; k < lanes * (i1 - i0); ++k) own[k] += row[k];
+        }
+    }
+}
+
+/* 1 where the sides leave the direction of this node free, 0 where they hold it. Nodes beyond a side are held like those on it. */
+static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double free_[2])
+{
+    const ab_scene *scene = body->scene;
+    const int i = tile->tx * AB_TILE + n % AB_TILE, j = tile->ty * AB_TILE + n / AB_TILE;
+    const bool at[AB_SIDES] = {i <= 0, i >= scene->grid_cells[0], j <= 0, j >= scene->grid_cells[1]};
+    free_[0] = free_[1] = 1.0;
+    for (int s = 0; s < AB_SIDES; ++s) {
+        if (!at[s]) continue;
+        if (scene->side[s] == AB_SIDE_FIXED) free_[0] = free_[1] = 0.0;
+        if (scene->side[s] == AB_SIDE_ROLLER) free_[s / 2] = 0.0;
+    }
+}
+
+/* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance; it never turns the velocity round. */
+static double damping_force(double factor, double force, double mass, double velocity, double dt)
+{
+    const double most = fabs(velocity) * mass / dt, wanted = factor * fabs(force);
+    return -copysign(fmin(wanted, most), velocity);
+}
+
+void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
+{
+    const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
+    const double dt = forces ? step->dt : 0.0;
+    const bool damped = forces && step->damping > 0.0 && body->damping_force;
+#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        const mpm_tile *tile = body->tiles + k;
+        double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
+        memset(sum, 0, sizeof sum);
+        add_patches(body, tile, 8, sum);
+        double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+        double *damping = damped ? body->damping_force + k * 2 * AB_TILE_NODES : NULL;
+        for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
+            const double *s = sum + 8 * n;
+            const double mass = s[NODE_MASS];
+            if (!(mass > 1e-300)) {
+                *(v8 *)own = v8_set(0.0);
+                if (damping) damping[2 * n] = damping[2 * n + 1] = 0.0;
+                continue;
+            }
+            const double inverse = 1.0 / mass;
+            double free_[2] = {1.0, 1.0};
+            if (tile->held) side_mask(body, tile, n, free_);
+            for (int c = 0; c < 2; ++c) {
+                const double old = s[NODE_MOMENTUM + c] * inverse * free_[c];
+                double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
+                if (damping) {
+                    const double extra = damping_force(step->damping, force, mass, old + force * inverse * dt, dt) * free_[c];
+                    damping[2 * n + c] = extra;
+                    force += extra;
+                }
+                own[OWN_OLD + c] = old;
+                own[OWN_VELOCITY + c] = (old + force * inverse * dt) * free_[c];
+                own[OWN_INVERSE + c] = inverse * free_[c];
+            }
+            own[OWN_MASS] = mass;
+        }
+    }
+}
+
+void mpm_grid_assemble_remap(mpm_body *body)
+{
+#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        const mpm_tile *tile = body->tiles + k;
+        double sum[2 * AB_TILE_NODES] __attribute__((aligned(64)));
+        memset(sum, 0, sizeof sum);
+        add_patches(body, tile, 2, sum);
+        double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+        for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
+            own[OWN_VELOCITY] = sum[2 * n] * own[OWN_INVERSE];
+            own[OWN_VELOCITY + 1] = sum[2 * n + 1] * own[OWN_INVERSE + 1];
+        }
+    }
+}
+
+void mpm_grid_fetch(const mpm_body *body, size_t number, double *velocity, double *change)
+{
+    const mpm_tile *tile = body->tiles + number;
+    for (int s = 0; s < 9; ++s) {
+        const int dx = s % 3 - 1, dy = s / 3 - 1;
+        const int i0 = dx < 0 ? AB_TILE - 1 : 0, i1 = dx > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const int j0 = dy < 0 ? AB_TILE - 1 : 0, j1 = dy > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        for (int j = j0; j < j1; ++j) {
+            const int at = 2 * ((j + dy * AB_TILE + 1) * PATCH + i0 + dx * AB_TILE + 1);
+            if (tile->around[s] < 0) {
+                memset(velocity + at, 0, sizeof(double) * 2 * (size_t)(i1 - i0));
+                if (change) memset(change + at, 0, sizeof(double) * 2 * (size_t)(i1 - i0));
+                continue;
+            }
+            const double *own = body->own + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * OWN_RECORD;
+            for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
+                velocity[at + 2 * i] = own[OWN_VELOCITY];
+                velocity[at + 2 * i + 1] = own[OWN_VELOCITY + 1];
+                if (change) {
+                    change[at + 2 * i] = own[OWN_VELOCITY] - own[OWN_OLD];
+                    change[at + 2 * i + 1] = own[OWN_VELOCITY + 1] - own[OWN_OLD + 1];
+                }
+            }
+        }
+    }
+    for (int k = 0; k < 8; ++k) {
+        velocity[2 * PATCH_NODES + k] = 0.0;
+        if (change) change[2 * PATCH_NODES + k] = 0.0;
+    }
+}
+
+/* A node with less than LIGHT of a point's mass is accelerated without bound by a finite stress; its momentum has gone to the points already, so the
+ * strain may take the velocity it had before. Only USL asks for it: USF and MUSL strain with momentum over mass, an average that is bounded. */
+void mpm_grid_limit_light(mpm_body *body)
+{
+    static const double LIGHT = 1e-4;
+    const double limit = LIGHT * body->point_mass;
+    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
+        double *own = body->own + n * OWN_RECORD;
+        if (own[OWN_MASS] > 0.0 && own[OWN_MASS] < limit)
+            for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c];
+    }
+}

@@ -1,0 +1,210 @@
+/* trace.c: what a contact finder sees of a material-point body at the nodes it shares with another: mass, gradients, and the points near each node. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "mpm/body.h"
+
+typedef struct near_point { uint32_t node; uint32_t slot; } near_point;
+
+struct mpm_trace {
+    size_t capacity, near_capacity, entry_capacity, tile_capacity;
+    double *position, *mass, *mass_gradient, *area_vector;
+    size_t *near_start, *stencil_start;
+    uint32_t *stencil_dof;
+    double *stencil_weight;
+    uint64_t *key;
+    double *near_position, *near_extent;
+    near_point *entries;
+    uint32_t *stamp;       /* per tile: candidate in call number stamp */
+    uint32_t *tile_list;
+    uint32_t call;
+};
+
+void mpm_trace_destroy(struct mpm_trace *t)
+{
+    if (!t) return;
+    free(t->position), free(t->mass), free(t->mass_gradient), free(t->area_vector), free(t->near_start), free(t->stencil_start);
+    free(t->stencil_dof), free(t->stencil_weight), free(t->key), free(t->near_position), free(t->near_extent), free(t->entries);
+    free(t->stamp), free(t->tile_list), free(t);
+}
+
+static bool grow(void *pointer, size_t count, size_t size)
+{
+    void **p = pointer;
+    void *more = realloc(*p, count * size);
+    if (more) *p = more;
+    return more != NULL;
+}
+
+static bool reserve(mpm_body *body, size_t count)
+{
+    if (!body->trace) body->trace = calloc(1, sizeof *body->trace);
+    struct mpm_trace *t = body->trace;
+    if (!t) return false;
+    if (body->tile_count > t->tile_capacity) {
+        const size_t n = body->tile_count * 2;
+        if (!grow(&t->stamp, n, sizeof *t->stamp) || !grow(&t->tile_list, n, sizeof *t->tile_list)) return false;
+        memset(t->stamp, 0, n * sizeof *t->stamp);
+        t->tile_capacity = n;
+        t->call = 0;
+    }
+    if (count < t->capacity) return true;
+    const size_t n = (2 * count + 64) & ~(size_t)7;
+    if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->mass, n, sizeof(double)) || !grow(&t->mass_gradient, 2 * n, sizeof(double)) ||
+        !grow(&t->area_vector, 2 * n, sizeof(double)) || !grow(&t->near_start, n + 1, sizeof(size_t)) || !grow(&t->stencil_start, n + 1, sizeof(size_t)) ||
+        !grow(&t->stencil_dof, n, sizeof(uint32_t)) || !grow(&t->stencil_weight, n, sizeof(double)) || !grow(&t->key, n, sizeof(uint64_t)))
+        return false;
+    t->capacity = n;
+    return true;
+}
+
+/* The tiles whose points can reach a wanted node: its own and the eight around it. Ascending. */
+static int compare_numbers(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t count)
+{
+    struct mpm_trace *t = body->trace;
+    ++t->call;
+    size_t tiles = 0;
+    for (size_t k = 0; k < count; ++k) {
+        if (k && nodes[k] / AB_TILE_NODES == nodes[k - 1] / AB_TILE_NODES) continue;
+        const mpm_tile *home = body->tiles + nodes[k] / AB_TILE_NODES;
+        for (int s = 0; s < 9; ++s) {
+            const int32_t near = home->around[s];
+            if (near < 0 || body->tiles[near].patch < 0 || t->stamp[near] == t->call) continue;
+            t->stamp[near] = t->call;
+            t->tile_list[tiles++] = (uint32_t)near;
+        }
+    }
+    qsort(t->tile_list, tiles, sizeof *t->tile_list, compare_numbers);
+    return tiles;
+}
+
+/* Number of the wanted node + 1 at each place of a tile's patch, 0 elsewhere. Nodes are ascending, so those of a tile are a run. */
+static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t count, uint32_t wanted[PATCH_NODES])
+{
+    memset(wanted, 0, PATCH_NODES * sizeof *wanted);
+    bool any = false;
+    for (int s = 0; s < 9; ++s) {
+        if (tile->around[s] < 0) continue;
+        const uint32_t first = (uint32_t)tile->around[s] * AB_TILE_NODES;
+        size_t low = 0, high = count;
+        while (low < high) {
+            const size_t middle = (low + high) / 2;
+            if (nodes[middle] < first) low = middle + 1;
+            else high = middle;
+        }
+        for (; low < count && nodes[low] < first + AB_TILE_NODES; ++low) {
+            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + 1, j = n / AB_TILE + (s / 3 - 1) * AB_TILE + 1;
+            if (i < 0 || j < 0 || i >= PATCH || j >= PATCH) continue;
+            wanted[j * PATCH + i] = (uint32_t)low + 1;
+            any = true;
+        }
+    }
+    return any;
+}
+
+/* Gradients at the wanted nodes and the list of points near them, from one tile's points. */
+static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[PATCH_NODES], uint32_t needs, size_t *entries)
+{
+    struct mpm_trace *t = body->trace;
+    const int nodes = body->kernel->nodes;
+    const size_t ld = t->capacity;
+    bool reached[PATCH_NODES] = {false}; /* by the stencil that begins here */
+    for (int j = 0; j + nodes <= PATCH; ++j)
+        for (int i = 0; i + nodes <= PATCH; ++i)
+            for (int jj = 0; jj < nodes; ++jj)
+                for (int ii = 0; ii < nodes; ++ii)
+                    if (wanted[(j + jj) * PATCH + i + ii]) reached[j * PATCH + i] = true;
+    for (uint32_t b = 0; b < tile->blocks; ++b) {
+        const double *block = mpm_block(body, tile->first + b);
+        mpm_weights w;
+        body->kernel->weights(body, tile, block, &w);
+        for (int l = 0; l < 8; ++l) {
+            if (!reached[w.node[l]]) continue;
+            const uint32_t slot = (tile->first + b) * 8 + (uint32_t)l;
+            if (body->ids[slot] == UINT64_MAX) continue;
+            if (*entries + 9 > t->entry_capacity) {
+                const size_t more = 2 * t->entry_capacity + 1024;
+                if (!grow(&t->entries, more, sizeof *t->entries)) return false;
+                t->entry_capacity = more;
+            }
+            const double mass = block[8 * ROW_MASS + l], volume = block[8 * ROW_VOLUME + l];
+            for (int j = 0; j < nodes; ++j)
+                for (int i = 0; i < nodes; ++i) {
+                    const uint32_t at = wanted[w.node[l] + j * PATCH + i];
+                    if (!at) continue;
+                    const double value = w.n[0][i][l] * w.n[1][j][l];
+                    const double gx = w.g[0][i][l] * w.n[1][j][l], gy = w.n[0][i][l] * w.g[1][j][l];
+                    t->mass_gradient[at - 1] += mass * gx;
+                    t->mass_gradient[ld + at - 1] += mass * gy;
+                    t->area_vector[at - 1] += volume * gx;
+                    t->area_vector[ld + at - 1] += volume * gy;
+                    if ((needs & AB_NEED_NEAR_POINTS) && value > 0.0) t->entries[(*entries)++] = (near_point){at - 1, slot};
+                }
+        }
+    }
+    return true;
+}
+
+ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report)
+{
+    mpm_body *body = (mpm_body *)domain;
+    if (!reserve(body, count)) goto no_memory;
+    struct mpm_trace *t = body->trace;
+    const size_t ld = t->capacity;
+    memset(t->mass_gradient, 0, 2 * ld * sizeof(double));
+    memset(t->area_vector, 0, 2 * ld * sizeof(double));
+    for (size_t k = 0; k < count; ++k) {
+        const mpm_tile *tile = body->tiles + nodes[k] / AB_TILE_NODES;
+        const int n = (int)(nodes[k] % AB_TILE_NODES), i = tile->tx * AB_TILE + n % AB_TILE, j = tile->ty * AB_TILE + n / AB_TILE;
+        t->position[k] = body->h * i;
+        t->position[ld + k] = body->h * j;
+        t->mass[k] = body->own[(size_t)nodes[k] * OWN_RECORD + OWN_MASS];
+        t->key[k] = ab_tile_key(i, j);
+        t->stencil_start[k] = k;
+        t->stencil_dof[k] = nodes[k];
+        t->stencil_weight[k] = 1.0;
+    }
+    t->stencil_start[count] = count;
+    size_t entries = 0;
+    if (needs & (AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS)) {
+        const size_t tiles = candidate_tiles(body, nodes, count);
+        for (size_t k = 0; k < tiles; ++k) {
+            uint32_t wanted[PATCH_NODES];
+            const mpm_tile *tile = body->tiles + t->tile_list[k];
+            if (wanted_in_patch(tile, nodes, count, wanted) && !look_at_tile(body, tile, wanted, needs, &entries)) goto no_memory;
+        }
+    }
+    if (needs & AB_NEED_NEAR_POINTS) { /* counting sort by node keeps the order of tiles and points */
+        if (entries > t->near_capacity) {
+            const size_t n = 2 * entries + 64;
+            if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) goto no_memory;
+            t->near_capacity = n;
+        }
+        memset(t->near_start, 0, (count + 1) * sizeof *t->near_start);
+        for (size_t e = 0; e < entries; ++e) ++t->near_start[t->entries[e].node + 1];
+        for (size_t k = 0; k < count; ++k) t->near_start[k + 1] += t->near_start[k];
+        for (size_t e = 0; e < entries; ++e) {
+            const size_t to = t->near_start[t->entries[e].node]++;
+            const double *point = mpm_block(body, t->entries[e].slot / 8) + t->entries[e].slot % 8;
+            for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = point[8 * (ROW_X + c)];
+            for (size_t c = 0; c < 3; ++c) t->near_extent[c * t->near_capacity + to] = point[8 * ((size_t)body->rows.extent + c)];
+        }
+        for (size_t k = count; k > 0; --k) t->near_start[k] = t->near_start[k - 1];
+        t->near_start[0] = 0;
+    }
+    *trace = (ab_trace){
+        .struct_size = sizeof *trace, .dimension = 2, .body = domain->spec->name, .stiffness = body->modulus, .cell = body->h, .count = count, .ld = ld,
+        .position = t->position, .stencil_start = t->stencil_start, .stencil_dof = t->stencil_dof, .stencil_weight = t->stencil_weight, .key = t->key, .mass = t->mass,
+        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL, .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
+        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL, .near_ld = t->near_capacity, .near_position = t->near_position, .near_extent = t->near_extent,
+    };
+    return AB_OK;
+no_memory:
+    return ab_report_failure(report, "body '%s': no memory for %zu nodes in contact", domain->spec->name, count);
+}
