@@ -37,7 +37,7 @@ static const ab_command commands[] = {
     {"plan", "SCENE", "what this scene needs, and what it will not pay for: points, memory, passes, plugins, steps, time", NULL,
      AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_JSON, 1, 1, ab_command_plan},
     {"plugins", "[show NAME]", "list the plugins found, or tell all about one: settings with unit, range, default",
-     "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 6,
+     "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 2,
      command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},

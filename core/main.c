@@ -1,8 +1,8 @@
 /* main.c: the one place that knows every room: it hands core the methods that bodies can have. */
 #include "core/commands.h"
-#include "mpm/material_points.h"
+#include "mpm/body.h"
 
 int main(int argc, char **argv) {
-    static const ab_method methods[] = {{"material-points", ab_material_points_create}};
+    static const ab_method methods[] = {{"material-points", mpm_create}};
     return ab_command_main(argc, argv, methods, sizeof methods / sizeof *methods);
 }

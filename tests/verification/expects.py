@@ -9,7 +9,7 @@ def number(value):
 
 with open(sys.argv[1]) as stream:
     summary = json.load(stream)
-for expect in summary.get("expect", []):
+for expect in summary["expects"]:
     print(
         "passed" if expect["pass"] else "MISSED",
         f"{expect['name']}: {number(expect['value'])}, reference {number(expect['reference'])},",

@@ -18,7 +18,7 @@ import re
 import sys
 
 said = float(re.search(r"the block slides ([0-9.]+) m", open(sys.argv[1]).read()).group(1))
-found = json.load(open("results/slide/summary.json"))["expect"][0]["value"] - 0.7
+found = json.load(open("results/slide/summary.json"))["expects"][0]["value"] - 0.7
 print(f"the text says {said} m, the run {found:.5f} m")
 assert abs(found - said) < 0.002, "the text and the run differ"
 PYTHON
