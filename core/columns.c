@@ -3,7 +3,10 @@
 
 #include <string.h>
 
-static const struct { const char *name; size_t offset; } terms[AB_TERMS] = {
+static const struct {
+    const char *name;
+    size_t offset;
+} terms[AB_TERMS] = {
     {"kinetic", offsetof(ab_energy, kinetic)},   {"strain", offsetof(ab_energy, strain)},     {"potential", offsetof(ab_energy, potential)},
     {"plastic", offsetof(ab_energy, plastic)},   {"friction", offsetof(ab_energy, friction)}, {"contact", offsetof(ab_energy, contact)},
     {"boundary", offsetof(ab_energy, boundary)}, {"damping", offsetof(ab_energy, damping)},   {"external", offsetof(ab_energy, external)},
@@ -25,7 +28,8 @@ size_t ab_term_shown(const ab_scene *scene) {
 }
 
 double ab_energy_balance(const ab_energy *e) {
-    return e->kinetic + e->strain + e->potential + e->plastic + e->friction + e->contact + e->boundary + e->damping + e->outflow - e->external;
+    return e->kinetic + e->strain + e->potential + e->plastic + e->friction + e->contact + e->boundary + e->damping + e->outflow -
+           e->external;
 }
 
 /* t, step, dt | terms, remainder | terms of each body */
@@ -36,10 +40,14 @@ size_t ab_column_count(const ab_scene *scene) { return BEFORE + ab_term_shown(sc
 void ab_column_name(const ab_scene *scene, size_t column, char *name, size_t size) {
     static const char *const first[BEFORE] = {"t", "step", "dt"};
     const size_t shown = ab_term_shown(scene), ledger = column - BEFORE;
-    if (column < BEFORE) snprintf(name, size, "%s", first[column]);
-    else if (ledger < shown) snprintf(name, size, "%s", terms[ledger].name);
-    else if (ledger == shown) snprintf(name, size, "remainder");
-    else snprintf(name, size, "%.256s.%s", scene->bodies[(ledger - shown - 1) / shown].name, terms[(ledger - shown - 1) % shown].name);
+    if (column < BEFORE)
+        snprintf(name, size, "%s", first[column]);
+    else if (ledger < shown)
+        snprintf(name, size, "%s", terms[ledger].name);
+    else if (ledger == shown)
+        snprintf(name, size, "remainder");
+    else
+        snprintf(name, size, "%.256s.%s", scene->bodies[(ledger - shown - 1) / shown].name, terms[(ledger - shown - 1) % shown].name);
 }
 
 const char *ab_column_unit(size_t column) { return column == 1 ? "1" : column < BEFORE ? "s" : "J"; }

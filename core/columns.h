@@ -9,10 +9,10 @@
 
 enum { AB_TERMS = 10 }; /* of the ledger; outflow is shown only where a side lets points out */
 
-const char *ab_term_name(size_t term);                         /* kinetic strain potential plastic friction contact boundary damping external outflow */
+const char *ab_term_name(size_t term); /* kinetic strain potential plastic friction contact boundary damping external outflow */
 double ab_term_value(const ab_energy *energy, size_t term);
-size_t ab_term_shown(const ab_scene *scene);                   /* AB_TERMS, or one less */
-double ab_energy_balance(const ab_energy *energy);             /* sum of the terms less external: constant where nothing is lost */
+size_t ab_term_shown(const ab_scene *scene);       /* AB_TERMS, or one less */
+double ab_energy_balance(const ab_energy *energy); /* sum of the terms less external: constant where nothing is lost */
 
 size_t ab_column_count(const ab_scene *scene);
 /* Name of a column; `name` holds at least 320 bytes. */

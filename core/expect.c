@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const norm_names[AB_NORMS] = {"final", "max", "l2", "mean", "peak", "min", "range", "time-of-peak",
-                                                 "first-above", "last-above", "duration", "integral", "slope"};
+static const char *const norm_names[AB_NORMS] = {"final",        "max",         "l2",         "mean",     "peak",     "min",  "range",
+                                                 "time-of-peak", "first-above", "last-above", "duration", "integral", "slope"};
 
 bool ab_norm_find(const char *name, ab_norm *norm) {
     for (int n = 0; n < AB_NORMS; n++)
@@ -25,7 +25,7 @@ ab_status ab_expect_begin(ab_expect *expect, const ab_expect_spec *spec, ab_repo
 }
 
 bool ab_expect_wants(const ab_expect *expect, double time, double dt) {
-    const double slack = 1e-6 * dt; /* a window that ends on a step holds that step */
+    const double slack = 1e-6 * dt;                                                      /* a window that ends on a step holds that step */
     if (expect->norm == AB_NORM_FINAL && expect->spec->to - time > 3 * dt) return false; /* later ones will replace it */
     return time >= expect->spec->from - slack && time <= expect->spec->to + slack;
 }
@@ -45,7 +45,8 @@ static void between(ab_expect *e, double t0, double y0, double r0, double t1, do
 }
 
 bool ab_expect_wants_last(const ab_expect *expect, double time) {
-    return expect->norm == AB_NORM_FINAL && time >= expect->spec->from && time <= expect->spec->to && (expect->samples == 0 || expect->time < time);
+    return expect->norm == AB_NORM_FINAL && time >= expect->spec->from && time <= expect->spec->to &&
+           (expect->samples == 0 || expect->time < time);
 }
 
 void ab_expect_sample(ab_expect *e, double t, double y) {

@@ -20,16 +20,28 @@
 #include "core/scene.h"
 
 typedef enum ab_norm {
-    AB_NORM_FINAL, AB_NORM_MAX, AB_NORM_L2, AB_NORM_MEAN, AB_NORM_PEAK, AB_NORM_MIN, AB_NORM_RANGE, AB_NORM_TIME_OF_PEAK,
-    AB_NORM_FIRST_ABOVE, AB_NORM_LAST_ABOVE, AB_NORM_DURATION, AB_NORM_INTEGRAL, AB_NORM_SLOPE, AB_NORMS
+    AB_NORM_FINAL,
+    AB_NORM_MAX,
+    AB_NORM_L2,
+    AB_NORM_MEAN,
+    AB_NORM_PEAK,
+    AB_NORM_MIN,
+    AB_NORM_RANGE,
+    AB_NORM_TIME_OF_PEAK,
+    AB_NORM_FIRST_ABOVE,
+    AB_NORM_LAST_ABOVE,
+    AB_NORM_DURATION,
+    AB_NORM_INTEGRAL,
+    AB_NORM_SLOPE,
+    AB_NORMS
 } ab_norm;
 
 typedef struct ab_expect { /* running sums */
     const ab_expect_spec *spec;
     ab_norm norm;
     size_t samples;
-    bool broken;                                /* a value or a reference was not a number */
-    double first_time, time, value, reference;  /* of the first sample; of the last one */
+    bool broken;                               /* a value or a reference was not a number */
+    double first_time, time, value, reference; /* of the first sample; of the last one */
     double worst, worst_value, worst_reference, largest_reference;
     double peak, peak_time, least;
     double integral, square_error, square_value, square_reference; /* integrals over time */
@@ -37,7 +49,10 @@ typedef struct ab_expect { /* running sums */
     double origin, sum_t, sum_y, sum_tt, sum_ty; /* least squares, t and y relative to the first sample */
 } ab_expect;
 
-typedef struct ab_outcome { double value, reference, error, tolerance; bool pass; } ab_outcome;
+typedef struct ab_outcome {
+    double value, reference, error, tolerance;
+    bool pass;
+} ab_outcome;
 
 /* False where there is no norm of that name. */
 bool ab_norm_find(const char *name, ab_norm *norm);

@@ -10,16 +10,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-char *ab_path_join(const char *folder, const char *name)
-{
+char *ab_path_join(const char *folder, const char *name) {
     const size_t length = strlen(folder);
     char *path = malloc(length + strlen(name) + 2);
     if (path != NULL) sprintf(path, "%s%s%s", folder, length > 0 && folder[length - 1] == '/' ? "" : "/", name);
     return path;
 }
 
-ab_status ab_folder_make(const char *path, ab_report *report)
-{
+ab_status ab_folder_make(const char *path, ab_report *report) {
     char *copy = strdup(path);
     if (copy == NULL) return ab_report_failure(report, "no memory to make the folder '%s'", path);
     ab_status status = AB_OK;
@@ -39,8 +37,7 @@ ab_status ab_folder_make(const char *path, ab_report *report)
     return status;
 }
 
-static int write_all(int file, const char *bytes, size_t count)
-{
+static int write_all(int file, const char *bytes, size_t count) {
     while (count > 0) {
         const size_t most = (size_t)1 << 30; /* one call never moves more than 2 GiB */
         const ssize_t done = write(file, bytes, count < most ? count : most);
@@ -52,8 +49,7 @@ static int write_all(int file, const char *bytes, size_t count)
     return 0;
 }
 
-ab_status ab_file_replace(const char *path, const void *bytes, size_t count, ab_report *report)
-{
+ab_status ab_file_replace(const char *path, const void *bytes, size_t count, ab_report *report) {
     char *beside = malloc(strlen(path) + 6);
     if (beside == NULL) return ab_report_failure(report, "no memory to write '%s'", path);
     sprintf(beside, "%s.part", path);
@@ -64,14 +60,14 @@ ab_status ab_file_replace(const char *path, const void *bytes, size_t count, ab_
     if (failed != 0 && file >= 0) unlink(beside);
     free(beside);
     if (failed != 0)
-        return ab_report_failure(report, "cannot write '%s' (%zu bytes): %s; what was written before is kept", path, count, strerror(failed));
+        return ab_report_failure(report, "cannot write '%s' (%zu bytes): %s; what was written before is kept", path, count,
+                                 strerror(failed));
     return AB_OK;
 }
 
 /* ---- texts ---- */
 
-static bool text_reserve(ab_text *text, size_t more)
-{
+static bool text_reserve(ab_text *text, size_t more) {
     if (text->failed) return false;
     if (text->count + more <= text->capacity) return true;
     size_t capacity = text->capacity < 1024 ? 1024 : text->capacity;
@@ -86,8 +82,7 @@ static bool text_reserve(ab_text *text, size_t more)
     return true;
 }
 
-void ab_text_add(ab_text *text, const char *format, ...)
-{
+void ab_text_add(ab_text *text, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     const int length = vsnprintf(NULL, 0, format, arguments);
@@ -102,8 +97,7 @@ void ab_text_add(ab_text *text, const char *format, ...)
     text->count += (size_t)length;
 }
 
-void ab_text_add_escaped(ab_text *text, const char *string)
-{
+void ab_text_add_escaped(ab_text *text, const char *string) {
     if (string == NULL) {
         ab_text_add(text, "null");
         return;
@@ -111,28 +105,35 @@ void ab_text_add_escaped(ab_text *text, const char *string)
     ab_text_add(text, "\"");
     for (; *string != '\0'; string++) {
         const unsigned char c = (unsigned char)*string;
-        if (c == '"' || c == '\\') ab_text_add(text, "\\%c", c);
-        else if (c == '\n') ab_text_add(text, "\\n");
-        else if (c < 0x20 || c == 0x7f) ab_text_add(text, "\\u%04x", c);
-        else ab_text_add(text, "%c", c);
+        if (c == '"' || c == '\\')
+            ab_text_add(text, "\\%c", c);
+        else if (c == '\n')
+            ab_text_add(text, "\\n");
+        else if (c < 0x20 || c == 0x7f)
+            ab_text_add(text, "\\u%04x", c);
+        else
+            ab_text_add(text, "%c", c);
     }
     ab_text_add(text, "\"");
 }
 
-void ab_text_add_xml(ab_text *text, const char *string)
-{
+void ab_text_add_xml(ab_text *text, const char *string) {
     for (; *string != '\0'; string++) {
         const unsigned char c = (unsigned char)*string;
-        if (c == '&') ab_text_add(text, "&amp;");
-        else if (c == '<') ab_text_add(text, "&lt;");
-        else if (c == '>') ab_text_add(text, "&gt;");
-        else if (c == '"') ab_text_add(text, "&quot;");
-        else if (c >= 0x20) ab_text_add(text, "%c", c);
+        if (c == '&')
+            ab_text_add(text, "&amp;");
+        else if (c == '<')
+            ab_text_add(text, "&lt;");
+        else if (c == '>')
+            ab_text_add(text, "&gt;");
+        else if (c == '"')
+            ab_text_add(text, "&quot;");
+        else if (c >= 0x20)
+            ab_text_add(text, "%c", c);
     }
 }
 
-void ab_text_add_number(ab_text *text, double value)
-{
+void ab_text_add_number(ab_text *text, double value) {
     if (!isfinite(value)) {
         ab_text_add(text, "null");
         return;
@@ -143,8 +144,7 @@ void ab_text_add_number(ab_text *text, double value)
     ab_text_add(text, "%s", digits);
 }
 
-void ab_text_clear(ab_text *text)
-{
+void ab_text_clear(ab_text *text) {
     free(text->bytes);
     *text = (ab_text){0};
 }

@@ -12,11 +12,15 @@ ab_status ab_file_replace(const char *path, const void *bytes, size_t count, ab_
 char *ab_path_join(const char *folder, const char *name);
 
 /* A text that grows. A failed allocation is remembered and found at the end by ab_text_failed. */
-typedef struct ab_text { char *bytes; size_t count, capacity; bool failed; } ab_text;
+typedef struct ab_text {
+    char *bytes;
+    size_t count, capacity;
+    bool failed;
+} ab_text;
 void ab_text_add(ab_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void ab_text_add_escaped(ab_text *text, const char *string);     /* a JSON string with its quotes */
-void ab_text_add_xml(ab_text *text, const char *string);         /* & < > " escaped */
-void ab_text_add_number(ab_text *text, double value);            /* shortest JSON number that reads back the same; null for NaN and infinity */
-void ab_text_clear(ab_text *text);                               /* frees */
+void ab_text_add_escaped(ab_text *text, const char *string); /* a JSON string with its quotes */
+void ab_text_add_xml(ab_text *text, const char *string);     /* & < > " escaped */
+void ab_text_add_number(ab_text *text, double value);        /* shortest JSON number that reads back the same; null for NaN and infinity */
+void ab_text_clear(ab_text *text);                           /* frees */
 
 #endif

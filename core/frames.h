@@ -27,7 +27,11 @@ void ab_frames_destroy(ab_frames *frames);
 
 typedef struct ab_xdmf ab_xdmf; /* one .xdmf file that grows by a grid a frame */
 
-typedef struct ab_xdmf_field { const char *name; int components; bool integer; } ab_xdmf_field;
+typedef struct ab_xdmf_field {
+    const char *name;
+    int components;
+    bool integer;
+} ab_xdmf_field;
 
 ab_status ab_xdmf_create(const char *path, const char *title, ab_xdmf **xdmf, ab_report *report);
 /* Adds a grid for /frame/group of results.h5 and writes the file anew, in one piece. topology_frame: the frame that holds `vertices`. */

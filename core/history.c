@@ -45,7 +45,8 @@ static void put_name(FILE *file, const char *name) {
 ab_status ab_history_create(const char *folder, const ab_scene *scene, ab_history **result, ab_report *report) {
     ab_history *history = calloc(1, sizeof *history);
     *result = history;
-    if (history == NULL || (history->path = ab_path_join(folder, "history.csv")) == NULL) return ab_report_failure(report, "no memory for history.csv");
+    if (history == NULL || (history->path = ab_path_join(folder, "history.csv")) == NULL)
+        return ab_report_failure(report, "no memory for history.csv");
     history->scene = scene;
     history->columns = ab_column_count(scene);
     history->last_step = -1;
@@ -68,8 +69,10 @@ ab_status ab_history_create(const char *folder, const ab_scene *scene, ab_histor
 
 /* Every digit that matters; the zeros that fill most ledgers and whole numbers take a short way. */
 static void put_number(FILE *file, double value) {
-    if (value == 0 || (fabs(value) < 1e15 && value == (double)(long long)value)) fprintf(file, "%lld", (long long)value);
-    else fprintf(file, "%.17g", value);
+    if (value == 0 || (fabs(value) < 1e15 && value == (double)(long long)value))
+        fprintf(file, "%lld", (long long)value);
+    else
+        fprintf(file, "%.17g", value);
 }
 
 ab_status ab_history_row(ab_history *history, const ab_state_view *view, ab_monitors *monitors, ab_report *report) {

@@ -34,13 +34,13 @@ typedef struct monitor {
     source source;
     gather gather;
     quantity quantity;
-    size_t offset;           /* of a number in ab_motion or ab_contact_totals; of an energy the term, SIZE_MAX - 1: total, SIZE_MAX: remainder */
-    bool is_size;            /* the number is a size_t */
-    bool by_mass;            /* momentum / mass */
-    bool from_start;         /* displacement: less the value at the start */
+    size_t offset;   /* of a number in ab_motion or ab_contact_totals; of an energy the term, SIZE_MAX - 1: total, SIZE_MAX: remainder */
+    bool is_size;    /* the number is a size_t */
+    bool by_mass;    /* momentum / mass */
+    bool from_start; /* displacement: less the value at the start */
     int component;
     const char *unit, *field;
-    size_t *selected;        /* points at the start, ascending; NULL: all */
+    size_t *selected; /* points at the start, ascending; NULL: all */
     size_t selected_count;
     long step;
     double value;
@@ -64,15 +64,16 @@ static const ab_field *find_field(const ab_domain *domain, const char *name) {
     return NULL;
 }
 
-static ab_status read_field(ab_monitors *monitors, size_t body, const ab_state_view *view, const char *name, int components, const double **values,
-                            ab_report *report) {
+static ab_status read_field(ab_monitors *monitors, size_t body, const ab_state_view *view, const char *name, int components,
+                            const double **values, ab_report *report) {
     body_points *points = &monitors->of_body[body];
     const ab_domain *domain = view->domains[body];
     const size_t count = domain->ops->count(domain);
     field_values *slot = NULL;
     for (int f = 0; f < FIELDS_PER_BODY && slot == NULL; f++)
         if (!points->fields[f].used || strcmp(points->fields[f].name, name) == 0) slot = &points->fields[f];
-    if (slot == NULL) return ab_report_failure(report, "monitors: more than %d fields of body '%s'", FIELDS_PER_BODY, view->scene->bodies[body].name);
+    if (slot == NULL)
+        return ab_report_failure(report, "monitors: more than %d fields of body '%s'", FIELDS_PER_BODY, view->scene->bodies[body].name);
     if (!slot->used) {
         snprintf(slot->name, sizeof slot->name, "%s", name);
         slot->components = components;
@@ -98,8 +99,10 @@ static size_t place_now(const body_points *points, size_t start, size_t count, c
     size_t low = 0, high = count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (id[middle] < points->id[start]) low = middle + 1;
-        else high = middle;
+        if (id[middle] < points->id[start])
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low < count && id[low] == points->id[start] ? low : SIZE_MAX;
 }
@@ -111,7 +114,8 @@ static ab_status keep_start(ab_monitors *monitors, size_t body, const ab_state_v
     points->count = domain->ops->count(domain);
     points->position = malloc((points->count + 1) * (size_t)domain->dimension * sizeof *points->position);
     points->id = malloc((points->count + 1) * sizeof *points->id);
-    if (points->position == NULL || points->id == NULL) return ab_report_failure(report, "no memory for monitors of %zu points", points->count);
+    if (points->position == NULL || points->id == NULL)
+        return ab_report_failure(report, "no memory for monitors of %zu points", points->count);
     AB_TRY(domain->ops->read(domain, "position", points->position, report));
     return domain->ops->read(domain, "id", points->id, report);
 }
@@ -130,8 +134,10 @@ static int component_of(const char *names, const char *wanted) { /* place of a w
 }
 
 static bool energy_offset(const char *term, size_t *offset) {
-    if (strcmp(term, "total") == 0) *offset = SIZE_MAX - 1;
-    else if (strcmp(term, "remainder") == 0) *offset = SIZE_MAX;
+    if (strcmp(term, "total") == 0)
+        *offset = SIZE_MAX - 1;
+    else if (strcmp(term, "remainder") == 0)
+        *offset = SIZE_MAX;
     else {
         for (size_t t = 0; t < AB_TERMS; t++) {
             if (strcmp(ab_term_name(t), term) != 0) continue;
@@ -172,7 +178,11 @@ static bool find_motion(monitor *m, const char *base, int axis, bool scene) {
 }
 
 static bool find_contact(monitor *m, const char *base, int axis) {
-    static const struct { const char *name, *unit; size_t offset; bool vector, size; } known[] = {
+    static const struct {
+        const char *name, *unit;
+        size_t offset;
+        bool vector, size;
+    } known[] = {
         {"force", "N", offsetof(ab_contact_totals, force), true, false},
         {"impulse", "N s", offsetof(ab_contact_totals, impulse), true, false},
         {"moment", "N m", offsetof(ab_contact_totals, moment), false, false},
@@ -264,7 +274,8 @@ static bool find_value(monitor *m, const ab_state_view *view) {
 static void find_nearest(monitor *m, const body_points *points, int dimension) {
     double best = INFINITY;
     for (size_t p = 0; p < points->count; p++) {
-        const double dx = points->position[p * (size_t)dimension] - m->spec->at[0], dy = points->position[p * (size_t)dimension + 1] - m->spec->at[1];
+        const double dx = points->position[p * (size_t)dimension] - m->spec->at[0],
+                     dy = points->position[p * (size_t)dimension + 1] - m->spec->at[1];
         const double distance = dx * dx + dy * dy;
         if (distance < best) {
             best = distance;
@@ -290,9 +301,12 @@ static void find_where(monitor *m, const body_points *points, int dimension) {
         bool in = true;
         for (int c = 0; c < 2; c++) {
             const double slack = 1e-6 * (high[c] - low[c]);
-            if (where->has[c] && where->range[c][0] == where->range[c][1]) in = in && fabs(x[c] - where->range[c][0]) <= nearest[c] + slack;
-            else if (where->has[c]) in = in && x[c] >= where->range[c][0] && x[c] <= where->range[c][1];
-            if (where->side >= 0 && where->side / 2 == c) in = in && (where->side % 2 == 0 ? x[c] <= low[c] + slack : x[c] >= high[c] - slack);
+            if (where->has[c] && where->range[c][0] == where->range[c][1])
+                in = in && fabs(x[c] - where->range[c][0]) <= nearest[c] + slack;
+            else if (where->has[c])
+                in = in && x[c] >= where->range[c][0] && x[c] <= where->range[c][1];
+            if (where->side >= 0 && where->side / 2 == c)
+                in = in && (where->side % 2 == 0 ? x[c] <= low[c] + slack : x[c] >= high[c] - slack);
         }
         if (in) m->selected[m->selected_count++] = p;
     }
@@ -302,7 +316,9 @@ static ab_status find(ab_monitors *monitors, monitor *m, const ab_state_view *vi
     const ab_monitor_spec *spec = m->spec;
     if (!find_value(m, view))
         return ab_report_error(report, spec->mark, "monitor '%s': there is no value '%s' of %s", spec->name, spec->value,
-                               spec->contact >= 0 ? "a contact" : spec->body >= 0 ? "this body, or not in this form" : "the whole scene");
+                               spec->contact >= 0 ? "a contact"
+                               : spec->body >= 0  ? "this body, or not in this form"
+                                                  : "the whole scene");
     if (m->source != OF_POINTS) return AB_OK;
     const bool all = !spec->has_at && (!spec->has_where || spec->where.all);
     if (all && m->quantity != THE_DISPLACEMENT) return AB_OK;
@@ -311,10 +327,13 @@ static ab_status find(ab_monitors *monitors, monitor *m, const ab_state_view *vi
     if (all) return AB_OK;
     m->selected = malloc((points->count + 1) * sizeof *m->selected);
     if (m->selected == NULL) return ab_report_failure(report, "no memory for monitor '%s'", spec->name);
-    if (spec->has_at) find_nearest(m, points, monitors->dimension);
-    else find_where(m, points, monitors->dimension);
+    if (spec->has_at)
+        find_nearest(m, points, monitors->dimension);
+    else
+        find_where(m, points, monitors->dimension);
     if (m->selected_count == 0)
-        return ab_report_error(report, spec->mark, "monitor '%s': no point of body '%s' lies there at the start", spec->name, view->scene->bodies[spec->body].name);
+        return ab_report_error(report, spec->mark, "monitor '%s': no point of body '%s' lies there at the start", spec->name,
+                               view->scene->bodies[spec->body].name);
     return AB_OK;
 }
 
@@ -390,8 +409,10 @@ static size_t place_before(const body_points *points, const double *id, size_t p
     size_t low = 0, high = points->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (points->id[middle] < id[p]) low = middle + 1;
-        else high = middle;
+        if (points->id[middle] < id[p])
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low;
 }

@@ -27,10 +27,14 @@ static int terminal_width(FILE *stream) {
 static void duration(double seconds, char *text, size_t size) {
     const double whole = seconds > 0 && seconds < 1e8 ? ceil(seconds) : 0;
     const long s = (long)whole;
-    if (!(seconds < 1e8)) snprintf(text, size, "?");
-    else if (s < 60) snprintf(text, size, "%ld s", s);
-    else if (s < 3600) snprintf(text, size, "%ld:%02ld min", s / 60, s % 60);
-    else snprintf(text, size, "%ld:%02ld h", s / 3600, s % 3600 / 60);
+    if (!(seconds < 1e8))
+        snprintf(text, size, "?");
+    else if (s < 60)
+        snprintf(text, size, "%ld s", s);
+    else if (s < 3600)
+        snprintf(text, size, "%ld:%02ld min", s / 60, s % 60);
+    else
+        snprintf(text, size, "%ld:%02ld h", s / 3600, s % 3600 / 60);
 }
 
 static double share(const ab_progress *p, const ab_state_view *view) {
@@ -95,8 +99,10 @@ static void show(ab_progress *p, const ab_state_view *view, double clock) {
     if (p->terminal ? since < 0.1 : since < 1 || (tenth == p->tenth && since < 10)) return;
     measure(p, view, clock);
     ab_progress_format(p, view, p->terminal ? terminal_width(p->stream) - 1 : 200, line, sizeof line);
-    if (p->terminal) fprintf(p->stream, "\r%s\033[K", line);
-    else fprintf(p->stream, "%s\n", line);
+    if (p->terminal)
+        fprintf(p->stream, "\r%s\033[K", line);
+    else
+        fprintf(p->stream, "%s\n", line);
     fflush(p->stream);
     p->drawn = true;
     p->shown = clock;
@@ -106,8 +112,10 @@ static void show(ab_progress *p, const ab_state_view *view, double clock) {
 void ab_progress_step(ab_progress *p, const ab_state_view *view) {
     if (p->quiet || view->step < p->next) return;
     const double clock = now(), since = clock - p->checked;
-    if (since < 0.01 && p->stride < 1 << 20) p->stride *= 2;
-    else if (since > 0.04 && p->stride > 1) p->stride /= 2;
+    if (since < 0.01 && p->stride < 1 << 20)
+        p->stride *= 2;
+    else if (since > 0.04 && p->stride > 1)
+        p->stride /= 2;
     p->checked = clock;
     p->next = view->step + p->stride;
     show(p, view, clock);

@@ -7,14 +7,14 @@
 typedef struct ab_progress { /* filled by begin; no part of it is for others */
     FILE *stream;
     bool quiet, terminal, drawn;
-    double time_end;              /* s, of the scene */
+    double time_end; /* s, of the scene */
     size_t points;
-    long stride, next;            /* the clock is looked at every `stride` steps */
-    double started, checked, shown;      /* s, of the clock */
-    double rate_clock, rate_time;        /* where the rates below were measured last */
+    long stride, next;              /* the clock is looked at every `stride` steps */
+    double started, checked, shown; /* s, of the clock */
+    double rate_clock, rate_time;   /* where the rates below were measured last */
     long rate_step;
     double points_per_second, time_per_second;
-    int tenth;                    /* of the run, shown last */
+    int tenth; /* of the run, shown last */
 } ab_progress;
 
 /* stream: stderr in a run. A bar where it is a terminal, else lines: at each tenth, though not within a second of the one before, and every 10 s. */

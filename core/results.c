@@ -95,8 +95,10 @@ static ab_status sample(ab_results *results, const ab_state_view *view, bool las
         ab_expect *expect = &results->expects[e];
         if (!(last ? ab_expect_wants_last(expect, view->time) : ab_expect_wants(expect, view->time, view->dt))) continue;
         double value = 0;
-        if (results->expect_column[e] != SIZE_MAX) value = ab_column_value(view, results->expect_column[e]);
-        else AB_TRY(ab_monitor_value(results->monitors, expect->spec->monitor, view, &value, report));
+        if (results->expect_column[e] != SIZE_MAX)
+            value = ab_column_value(view, results->expect_column[e]);
+        else
+            AB_TRY(ab_monitor_value(results->monitors, expect->spec->monitor, view, &value, report));
         ab_expect_sample(expect, view->time, value);
     }
     return AB_OK;

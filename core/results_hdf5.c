@@ -25,16 +25,16 @@
 
 enum { MOST_FIELDS = 24, MOST_COMPONENTS = 9 };
 
-typedef struct column { /* a dataset of each frame and body */
+typedef struct column {              /* a dataset of each frame and body */
     const char *name, *unit, *names; /* names of the components */
     int given, written;              /* components as the body has them, as the file has them */
     bool integer, of_body[1];        /* of_body has body_count entries: a body of another method may lack a field */
 } column;
 
 typedef struct frame_record {
-    size_t *points;        /* per body */
+    size_t *points; /* per body */
     size_t total;
-    size_t *topology;      /* per body, and of the cloud last: the frame that holds `vertices` for this number of points */
+    size_t *topology; /* per body, and of the cloud last: the frame that holds `vertices` for this number of points */
     double time;
     long step;
     off_t bytes;
@@ -49,9 +49,9 @@ struct ab_frames {
     char *folder, *frame_folder, *path; /* DIR, DIR/frames, DIR/results.h5 */
     frame_record *records;
     size_t count, capacity;
-    double *values, *rows;              /* as a body gives them; as the file has them */
+    double *values, *rows; /* as a body gives them; as the file has them */
     size_t value_capacity, row_capacity;
-    ab_xdmf *cloud, **of_body;          /* of_body: NULL where there is one body */
+    ab_xdmf *cloud, **of_body; /* of_body: NULL where there is one body */
 };
 
 /* ---- what will be written ---- */
@@ -84,9 +84,9 @@ static ab_status column_add(ab_frames *frames, const char *name, ab_report *repo
         const ab_field *field = field_of(frames->domains[b], name);
         if (field == NULL) continue;
         new->of_body[b] = true;
-        if (new->name != NULL && new->given != field->components)
-            return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components in one body and %d in body '%s'", name, new->given,
-                                   field->components, frames->scene->bodies[b].name);
+        if (new->name != NULL &&new->given != field->components)
+            return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components in one body and %d in body '%s'", name,
+                                   new->given, field->components, frames->scene->bodies[b].name);
         new->name = field->name;
         new->unit = field->unit;
         new->given = field->components;
@@ -95,8 +95,9 @@ static ab_status column_add(ab_frames *frames, const char *name, ab_report *repo
         new->written = vector ? 3 : stress ? 6 : field->components;
         new->names = vector ? "x y z" : stress ? "xx xy xz yy yz zz" : field->component_names != NULL ? field->component_names : "value";
     }
-    if (new->name != NULL && new->given > MOST_COMPONENTS)
-        return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components, more than %d", name, new->given, MOST_COMPONENTS);
+    if (new->name != NULL &&new->given > MOST_COMPONENTS)
+        return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components, more than %d", name, new->given,
+                               MOST_COMPONENTS);
     if (new->name != NULL) return AB_OK;
     char known[512] = "";
     size_t count = 0, used = 0;
@@ -115,7 +116,8 @@ ab_status ab_frames_create(const ab_scene *scene, ab_domain *const *domains, ab_
     frames->bodies = scene->body_count;
     for (size_t b = 0; b < frames->bodies; b++)
         if (strcmp(scene->bodies[b].name, "all") == 0)
-            return ab_report_error(report, scene->bodies[b].mark, "a body cannot be named 'all' where there is output: results.h5 has a group of that name");
+            return ab_report_error(report, scene->bodies[b].mark,
+                                   "a body cannot be named 'all' where there is output: results.h5 has a group of that name");
     static const char *const always[] = {"position", "id", "body"};
     ab_status status = AB_OK;
     for (size_t f = 0; f < 3 && status == AB_OK; f++) status = column_add(frames, always[f], report);
@@ -169,7 +171,8 @@ ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *repo
     frames->folder = ab_path_join(folder, "");
     frames->frame_folder = ab_path_join(folder, "frames");
     frames->path = ab_path_join(folder, "results.h5");
-    if (frames->folder == NULL || frames->frame_folder == NULL || frames->path == NULL) return ab_report_failure(report, "no memory for the output");
+    if (frames->folder == NULL || frames->frame_folder == NULL || frames->path == NULL)
+        return ab_report_failure(report, "no memory for the output");
     AB_TRY(ab_folder_make(frames->frame_folder, report));
     clear_frame_folder(frames->frame_folder);
     return xdmf_open(frames, report);
@@ -207,8 +210,10 @@ static ab_status memory_file_save(hid_t file, const char *path, off_t *bytes, ab
     void *image = malloc((size_t)size);
     if (image == NULL) return ab_report_failure(report, "no memory for a frame of %zd bytes; write fewer fields or frames", size);
     ab_status status = AB_OK;
-    if (H5Fget_file_image(file, image, (size_t)size) != size) status = trouble("build a frame", report);
-    else status = ab_file_replace(path, image, (size_t)size, report);
+    if (H5Fget_file_image(file, image, (size_t)size) != size)
+        status = trouble("build a frame", report);
+    else
+        status = ab_file_replace(path, image, (size_t)size, report);
     free(image);
     if (bytes != NULL) *bytes = (off_t)size;
     return status;
@@ -244,8 +249,8 @@ static hid_t space_of(size_t points, int components) {
     return H5Screate_simple(components > 1 ? 2 : 1, size, NULL);
 }
 
-static int dataset_write(hid_t group, const char *name, const char *unit, const char *names, hid_t stored, hid_t given, hid_t space, hid_t creation,
-                         const void *values) {
+static int dataset_write(hid_t group, const char *name, const char *unit, const char *names, hid_t stored, hid_t given, hid_t space,
+                         hid_t creation, const void *values) {
     const hid_t set = H5Dcreate2(group, name, stored, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     if (set < 0) return -1;
     int result = values != NULL ? H5Dwrite(set, given, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) : 0;
@@ -314,8 +319,8 @@ static ab_status column_write(ab_frames *frames, const column *c, size_t body, s
         spread(c, frames->values, points, rows);
     }
     const hid_t space = space_of(points, c->written);
-    const int result = dataset_write(group, c->name, c->unit, c->names, stored_type(c), c->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, space,
-                                     H5P_DEFAULT, rows);
+    const int result = dataset_write(group, c->name, c->unit, c->names, stored_type(c), c->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE,
+                                     space, H5P_DEFAULT, rows);
     H5Sclose(space);
     return result < 0 ? trouble("build a frame", report) : AB_OK;
 }
@@ -351,7 +356,8 @@ static int cloud_write(ab_frames *frames, size_t number, const char *frame, hid_
     const hid_t group = H5Gcreate2(parent, "all", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (group < 0) return -1;
     int result = 0;
-    for (size_t c = 0; c < frames->column_count && result >= 0; c++) result = cloud_column_write(frames, frames->columns[c], record, frame, group);
+    for (size_t c = 0; c < frames->column_count && result >= 0; c++)
+        result = cloud_column_write(frames, frames->columns[c], record, frame, group);
     if (result >= 0 && record->topology[frames->bodies] == number) {
         result = grow(&frames->rows, &frames->row_capacity, record->total + 1) ? vertices_write(group, record->total, frames->rows) : -1;
     }
@@ -364,8 +370,8 @@ static ab_status frame_fill(ab_frames *frames, size_t number, hid_t file, const 
     if (frame < 0) return trouble("build a frame", report);
     const int64_t step = record->step;
     ab_status status = AB_OK;
-    if (attribute_value(frame, "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &record->time) < 0 || attribute_text(frame, "time_unit", "s") < 0 ||
-        attribute_value(frame, "step", H5T_STD_I64LE, H5T_NATIVE_INT64, &step) < 0)
+    if (attribute_value(frame, "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &record->time) < 0 ||
+        attribute_text(frame, "time_unit", "s") < 0 || attribute_value(frame, "step", H5T_STD_I64LE, H5T_NATIVE_INT64, &step) < 0)
         status = trouble("build a frame", report);
     for (size_t b = 0; b < frames->bodies && status == AB_OK; b++) {
         const hid_t group = H5Gcreate2(frame, frames->scene->bodies[b].name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -423,8 +429,9 @@ static ab_status xdmf_add(ab_frames *frames, size_t number, ab_report *report) {
         for (size_t c = 0; c < frames->column_count; c++)
             if (cloud || frames->columns[c]->of_body[b])
                 fields[count++] = (ab_xdmf_field){frames->columns[c]->name, frames->columns[c]->written, frames->columns[c]->integer};
-        AB_TRY(ab_xdmf_add(cloud ? frames->cloud : frames->of_body[b], number, record->topology[b], cloud ? "all" : frames->scene->bodies[b].name,
-                           record->time, cloud ? record->total : record->points[b], fields, count, report));
+        AB_TRY(ab_xdmf_add(cloud ? frames->cloud : frames->of_body[b], number, record->topology[b],
+                           cloud ? "all" : frames->scene->bodies[b].name, record->time, cloud ? record->total : record->points[b], fields,
+                           count, report));
     }
     return AB_OK;
 }
@@ -437,9 +444,11 @@ ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *
     record->step = step;
     for (size_t b = 0; b < frames->bodies; b++) record->total += record->points[b] = frames->domains[b]->ops->count(frames->domains[b]);
     const frame_record *before = number > 0 ? &frames->records[number - 1] : NULL;
-    for (size_t b = 0; b < frames->bodies; b++) record->topology[b] = before && before->points[b] == record->points[b] ? before->topology[b] : number;
+    for (size_t b = 0; b < frames->bodies; b++)
+        record->topology[b] = before && before->points[b] == record->points[b] ? before->topology[b] : number;
     record->topology[frames->bodies] = before && before->total == record->total ? before->topology[frames->bodies] : number;
-    if (record->total > INT32_MAX) return ab_report_failure(report, "a frame of %zu points is more than the result files can number", record->total);
+    if (record->total > INT32_MAX)
+        return ab_report_failure(report, "a frame of %zu points is more than the result files can number", record->total);
 
     char name[32];
     snprintf(name, sizeof name, "frame_%06zu", number);
@@ -486,8 +495,9 @@ static int gather_frame(ab_frames *frames, size_t number, hid_t into) {
     const hid_t source = H5Gopen2(from, name, H5P_DEFAULT), target = H5Gcreate2(into, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     const int64_t step = frames->records[number].step;
     int result = source < 0 || target < 0 ? -1 : 0;
-    if (result == 0 && (attribute_value(target, "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &frames->records[number].time) < 0 ||
-                        attribute_text(target, "time_unit", "s") < 0 || attribute_value(target, "step", H5T_STD_I64LE, H5T_NATIVE_INT64, &step) < 0))
+    if (result == 0 &&
+        (attribute_value(target, "time", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &frames->records[number].time) < 0 ||
+         attribute_text(target, "time_unit", "s") < 0 || attribute_value(target, "step", H5T_STD_I64LE, H5T_NATIVE_INT64, &step) < 0))
         result = -1;
     for (size_t b = 0; b < frames->bodies && result >= 0; b++) {
         const char *body = frames->scene->bodies[b].name;
@@ -528,7 +538,8 @@ ab_status ab_frames_finish(ab_frames *frames, ab_report *report) {
         rmdir(frames->frame_folder);
     } else {
         unlink(beside);
-        ab_report_warning(report, AB_NOWHERE, "no room to gather %zu frames into '%s' (%lld bytes): it stays a list of links into '%s', which readers follow",
+        ab_report_warning(report, AB_NOWHERE,
+                          "no room to gather %zu frames into '%s' (%lld bytes): it stays a list of links into '%s', which readers follow",
                           frames->count, frames->path, (long long)bytes, frames->frame_folder);
     }
     free(beside);

@@ -22,15 +22,15 @@ struct ab_results {
     char *folder;
     ab_monitors *monitors;
     ab_history *history;
-    ab_frames *frames;         /* NULL without `output` */
+    ab_frames *frames; /* NULL without `output` */
     ab_expect *expects;
-    size_t *expect_column;     /* SIZE_MAX: a monitor */
+    size_t *expect_column; /* SIZE_MAX: a monitor */
     size_t expect_count;
-    long frame_step;           /* of the last frame; -1 */
-    double next_frame;         /* s */
-    ab_motion *motion_start;   /* per body */
+    long frame_step;         /* of the last frame; -1 */
+    double next_frame;       /* s */
+    ab_motion *motion_start; /* per body */
     ab_energy *energy_start;
-    double largest_moved;      /* J: the largest change of any term of the ledger so far */
+    double largest_moved; /* J: the largest change of any term of the ledger so far */
 };
 
 /* Largest change of a term of the whole scene between the start and now. */

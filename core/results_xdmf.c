@@ -12,9 +12,9 @@
 
 struct ab_xdmf {
     char *path, *title;
-    ab_text text;           /* head and grids, without the closing tags */
-    double cost, last;      /* s: what the last writing took, and when it was */
-    bool behind;            /* the file lacks grids that the text has */
+    ab_text text;      /* head and grids, without the closing tags */
+    double cost, last; /* s: what the last writing took, and when it was */
+    bool behind;       /* the file lacks grids that the text has */
 };
 
 static double now(void) {
@@ -50,7 +50,8 @@ ab_status ab_xdmf_create(const char *path, const char *title, ab_xdmf **result, 
     return AB_OK;
 }
 
-static void add_data(ab_xdmf *xdmf, const char *type, int precision, size_t points, int columns, size_t frame, const char *group, const char *name) {
+static void add_data(ab_xdmf *xdmf, const char *type, int precision, size_t points, int columns, size_t frame, const char *group,
+                     const char *name) {
     ab_text *text = &xdmf->text;
     ab_text_add(text, "<DataItem DataType=\"%s\" Precision=\"%d\" Dimensions=\"%zu", type, precision, points);
     if (columns > 0) ab_text_add(text, " %d", columns);
@@ -64,7 +65,9 @@ ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const 
     ab_text *text = &xdmf->text;
     ab_text_add(text, "<Grid Name=\"");
     ab_text_add_xml(text, xdmf->title);
-    ab_text_add(text, "\" GridType=\"Uniform\">\n<Time Value=\"%.17g\"/>\n<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%zu\" NodesPerElement=\"1\">",
+    ab_text_add(text,
+                "\" GridType=\"Uniform\">\n<Time Value=\"%.17g\"/>\n<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%zu\" "
+                "NodesPerElement=\"1\">",
                 time, points);
     add_data(xdmf, "Int", 4, points, 1, topology_frame, group, "vertices");
     ab_text_add(text, "</Topology>\n<Geometry GeometryType=\"XYZ\">");
@@ -73,7 +76,11 @@ ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const 
     for (size_t f = 0; f < field_count; f++) {
         const int n = fields[f].components;
         ab_text_add(text, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", fields[f].name,
-                    n == 1 ? "Scalar" : n == 3 ? "Vector" : n == 6 ? "Tensor6" : n == 9 ? "Tensor" : "Matrix");
+                    n == 1   ? "Scalar"
+                    : n == 3 ? "Vector"
+                    : n == 6 ? "Tensor6"
+                    : n == 9 ? "Tensor"
+                             : "Matrix");
         add_data(xdmf, fields[f].integer ? "Int" : "Float", 8, points, n > 1 ? n : 0, frame, group, fields[f].name);
         ab_text_add(text, "</Attribute>\n");
     }

@@ -137,7 +137,8 @@ static void cost(ab_text *text, const ab_run_facts *facts) {
     number(text, ",\n  \"cpu_seconds\": ", facts->cpu_seconds);
     ab_text_add(text, ",\n  \"steps\": %ld,\n  \"points\": %zu", facts->steps, facts->points);
     number(text, ",\n  \"point_steps_per_second\": ", facts->point_steps_per_second);
-    ab_text_add(text, ",\n  \"peak_bytes\": %zu,\n  \"bytes_per_point\": %zu,\n  \"threads\": %d", facts->peak_bytes, facts->bytes_per_point, facts->threads);
+    ab_text_add(text, ",\n  \"peak_bytes\": %zu,\n  \"bytes_per_point\": %zu,\n  \"threads\": %d", facts->peak_bytes,
+                facts->bytes_per_point, facts->threads);
     ab_text_add(text, ",\n  \"phase_seconds\": {");
     for (int phase = 0, shown = 0; phase < 8; phase++) {
         if (facts->phase_names[phase] == NULL) continue;

@@ -22,12 +22,15 @@ static void ledger(const ab_results *results, const ab_state_view *view, FILE *s
 static void contacts(const ab_state_view *view, FILE *stream) {
     const ab_scene *scene = view->scene;
     if (scene->contact_count == 0) return;
-    fprintf(stream, "\n  %-30s %12s %12s %8s %8s %12s\n", "contact, at the end", "normal, N", "friction, N", "points", "active", "penetration");
+    fprintf(stream, "\n  %-30s %12s %12s %8s %8s %12s\n", "contact, at the end", "normal, N", "friction, N", "points", "active",
+            "penetration");
     for (size_t k = 0; k < scene->contact_count; k++) {
         const ab_contact_totals *c = &view->contacts[k];
         char name[31];
-        snprintf(name, sizeof name, "%.13s - %.13s", scene->bodies[scene->contacts[k].body[0]].name, scene->bodies[scene->contacts[k].body[1]].name);
-        fprintf(stream, "  %-30s %12.6g %12.6g %8zu %8zu %12.4g\n", name, c->normal_force, c->friction_force, c->points, c->active, c->penetration);
+        snprintf(name, sizeof name, "%.13s - %.13s", scene->bodies[scene->contacts[k].body[0]].name,
+                 scene->bodies[scene->contacts[k].body[1]].name);
+        fprintf(stream, "  %-30s %12.6g %12.6g %8zu %8zu %12.4g\n", name, c->normal_force, c->friction_force, c->points, c->active,
+                c->penetration);
     }
 }
 
@@ -36,15 +39,17 @@ static void expects(const ab_results *results, FILE *stream) {
     fprintf(stream, "\n  %-30s %14s %14s %10s %10s\n", "expect", "value", "reference", "error", "tolerance");
     for (size_t e = 0; e < results->expect_count; e++) {
         const ab_outcome o = ab_expect_end(&results->expects[e]);
-        fprintf(stream, "  %-30.30s %14.7g %14.7g %10.3g %10.3g  %s\n", results->expects[e].spec->name, o.value, o.reference, o.error, o.tolerance,
-                o.pass ? "pass" : "MISS");
+        fprintf(stream, "  %-30.30s %14.7g %14.7g %10.3g %10.3g  %s\n", results->expects[e].spec->name, o.value, o.reference, o.error,
+                o.tolerance, o.pass ? "pass" : "MISS");
     }
 }
 
 void ab_results_table(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, FILE *stream) {
-    fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %zu points in %.3g s (%.3g s of processor time, %d thread%s)\n", facts->outcome, view->time, facts->steps,
-            facts->points, facts->wall_seconds, facts->cpu_seconds, facts->threads, facts->threads == 1 ? "" : "s");
-    fprintf(stream, "  %.4g million point-steps per second, %.4g MB at most\n", 1e-6 * facts->point_steps_per_second, 1e-6 * (double)facts->peak_bytes);
+    fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %zu points in %.3g s (%.3g s of processor time, %d thread%s)\n", facts->outcome,
+            view->time, facts->steps, facts->points, facts->wall_seconds, facts->cpu_seconds, facts->threads,
+            facts->threads == 1 ? "" : "s");
+    fprintf(stream, "  %.4g million point-steps per second, %.4g MB at most\n", 1e-6 * facts->point_steps_per_second,
+            1e-6 * (double)facts->peak_bytes);
     ledger(results, view, stream);
     contacts(view, stream);
     expects(results, stream);

@@ -1,0 +1,129 @@
+/* fake_domain.h: a body with numbers that are known, for the tests of what a run leaves. Point p (id p) starts at (p, 2p) and moves with velocity
+ * (1, 0.5); stress (10, 20, 30, 4) times (p + 1); mass p + 1; volume 2. Points with id < `lost` have left. */
+#ifndef FAKE_DOMAIN_H
+#define FAKE_DOMAIN_H
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/results.h"
+
+typedef struct fake_domain {
+    ab_domain base;
+    size_t start, lost;
+    double time;
+    long reads; /* of a field */
+} fake_domain;
+
+static inline size_t fake_count(const ab_domain *domain) {
+    const fake_domain *fake = (const fake_domain *)domain;
+    return fake->start - fake->lost;
+}
+
+static inline const ab_field *fake_fields(const ab_domain *domain, size_t *count) {
+    static const ab_field fields[] = {{"position", "m", 2, "x y"},
+                                      {"velocity", "m s-1", 2, "x y"},
+                                      {"stress", "Pa", 4, "xx yy zz xy"},
+                                      {"mass", "kg", 1, NULL},
+                                      {"volume", "m2", 1, NULL}};
+    (void)domain;
+    *count = sizeof fields / sizeof *fields;
+    return fields;
+}
+
+static inline ab_status fake_read(const ab_domain *domain, const char *field, double *values, ab_report *report) {
+    fake_domain *fake = (fake_domain *)(uintptr_t)domain;
+    const size_t count = fake_count(domain);
+    fake->reads++;
+    for (size_t k = 0; k < count; k++) {
+        const double id = (double)(k + fake->lost), t = fake->time;
+        if (strcmp(field, "id") == 0)
+            values[k] = id;
+        else if (strcmp(field, "mass") == 0)
+            values[k] = id + 1;
+        else if (strcmp(field, "volume") == 0)
+            values[k] = 2;
+        else if (strcmp(field, "position") == 0)
+            values[2 * k] = id + t, values[2 * k + 1] = 2 * id + 0.5 * t;
+        else if (strcmp(field, "velocity") == 0)
+            values[2 * k] = 1, values[2 * k + 1] = 0.5;
+        else if (strcmp(field, "stress") == 0)
+            for (int c = 0; c < 4; c++) values[4 * k + (size_t)c] = (double[]){10, 20, 30, 4}[c] * (id + 1);
+        else
+            return ab_report_failure(report, "no field '%s'", field);
+    }
+    return AB_OK;
+}
+
+static const ab_domain_ops fake_ops = {.method = "fake", .count = fake_count, .fields = fake_fields, .read = fake_read};
+
+/* A scene of two such bodies, and the view that a scheduler would keep of it. */
+typedef struct fake_run {
+    ab_scene scene;
+    ab_body_spec bodies[2];
+    ab_contact_spec contact;
+    fake_domain domains[2];
+    ab_domain *domain[2];
+    ab_contact_totals contacts[1];
+    ab_energy energy[2], energy_start[2];
+    ab_motion motion[2];
+    ab_state_view view;
+} fake_run;
+
+static inline void fake_update(fake_run *run, long step, double dt) {
+    run->view.step = step;
+    run->view.dt = dt;
+    run->view.time = (double)step * dt;
+    run->view.total = (ab_energy){0};
+    for (int b = 0; b < 2; b++) {
+        fake_domain *fake = &run->domains[b];
+        fake->time = run->view.time;
+        const double n = (double)fake->start, mass = n * (n + 1) / 2;
+        double moment[2] = {0, 0};
+        for (double id = 0; id < n; id++) moment[0] += (id + 1) * (id + fake->time), moment[1] += (id + 1) * (2 * id + 0.5 * fake->time);
+        run->motion[b] = (ab_motion){.mass = mass,
+                                     .momentum = {mass, 0.5 * mass, 0},
+                                     .angular_momentum = {0, 0, moment[0] * 0.5 - moment[1]},
+                                     .centre = {moment[0] / mass, moment[1] / mass, 0}};
+        run->energy[b] = (ab_energy){.kinetic = 5 - run->view.time, .strain = run->view.time, .friction = 0.25};
+        run->view.total.kinetic += run->energy[b].kinetic;
+        run->view.total.strain += run->energy[b].strain;
+        run->view.total.friction += run->energy[b].friction;
+    }
+    run->contacts[0] =
+        (ab_contact_totals){.force = {0, 7 * run->view.time, 0}, .normal_force = 7 * run->view.time, .points = 3, .active = 2};
+}
+
+static inline fake_run *fake_create(size_t first, size_t second) {
+    fake_run *run = calloc(1, sizeof *run);
+    if (run == NULL) abort();
+    static char block[] = "block", plane[] = "plane", title[] = "Two <bodies> & \"more\"", path[] = "scene.yaml";
+    run->bodies[0].name = block;
+    run->bodies[1].name = plane;
+    run->contact.body[1] = 1;
+    run->scene = (ab_scene){.title = title,
+                            .path = path,
+                            .dimension = 2,
+                            .bodies = run->bodies,
+                            .body_count = 2,
+                            .contacts = &run->contact,
+                            .contact_count = 1,
+                            .history_every = 1,
+                            .time_end = 1};
+    for (size_t b = 0; b < 2; b++) {
+        run->domains[b] = (fake_domain){.base = {&fake_ops, &run->bodies[b], 2, b}, .start = b == 0 ? first : second};
+        run->domain[b] = &run->domains[b].base;
+    }
+    run->view = (ab_state_view){.scene = &run->scene,
+                                .domains = run->domain,
+                                .contacts = run->contacts,
+                                .energy = run->energy,
+                                .motion = run->motion,
+                                .energy_start = run->energy_start,
+                                .limit = "wave speed"};
+    fake_update(run, 0, 0.1);
+    memcpy(run->energy_start, run->energy, sizeof run->energy);
+    return run;
+}
+
+#endif
