@@ -2,7 +2,7 @@
  *
  * The extent of a cut cell comes from its second moments, and for a skew or rounded corner sqrt(n.A.n) is not quite the distance d of the
  * outline. Stretching A along n by d / sqrt(n.A.n) makes it so and keeps A positive. Two sides far from parallel are met both at once (A written in the
- * basis dual to their normals, rows and columns scaled); more sides than two are approached in turns, none exactly. */
+ * basis dual to their normals, rows and columns scaled); three fix A where that leaves it positive; otherwise all are approached in turns, none exactly. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -38,13 +38,38 @@ static void fit_two(double a[3], const facing *f, const facing *g)
     a[2] = nn * m[0] * m[1] + kk * l[0] * l[1] + nk * (m[0] * l[1] + m[1] * l[0]);
 }
 
+/* Meets three sides at once where there is such an A and it is no wilder than the old one. */
+static bool fit_three(double a[3], const facing f[3])
+{
+    double m[3][4]; /* n.A.n = d^2, Cramer's rule */
+    for (int k = 0; k < 3; k++) {
+        const double *n = f[k].n;
+        m[k][0] = n[0] * n[0];
+        m[k][1] = n[1] * n[1];
+        m[k][2] = 2 * n[0] * n[1];
+        m[k][3] = f[k].distance * f[k].distance;
+    }
+    double det[4]; /* of all columns, and with the right side in place of column 0, 1, 2 */
+    for (int c = 0; c < 4; c++) {
+        const int p = c == 1 ? 3 : 0, q = c == 2 ? 3 : 1, r = c == 3 ? 3 : 2;
+        det[c] = m[0][p] * (m[1][q] * m[2][r] - m[1][r] * m[2][q]) - m[0][q] * (m[1][p] * m[2][r] - m[1][r] * m[2][p]) +
+                 m[0][r] * (m[1][p] * m[2][q] - m[1][q] * m[2][p]);
+    }
+    if (fabs(det[0]) < 0.05) return false;
+    const double b[3] = {det[1] / det[0], det[2] / det[0], det[3] / det[0]};
+    const double old = a[0] * a[1] - a[2] * a[2], new = b[0] * b[1] - b[2] * b[2], most = 4 * (a[0] + a[1]);
+    if (!(b[0] > 0 && b[1] > 0 && new > old / 16 && b[0] + b[1] < most)) return false;
+    for (int c = 0; c < 3; c++) a[c] = b[c];
+    return true;
+}
+
 static void fit(double a[3], facing *f, size_t count)
 {
     size_t used = 0;
     double longest = 0;
-    for (size_t k = 0; k < count; k++) { /* a side that the point stands hardly inside of (a notch) has no say; opposite ones share one */
+    for (size_t k = 0; k < count; k++) { /* opposite sides share one distance; in a notch the point may stand beyond a side, and keeps some size */
         const double now = half_size(a, f[k].n);
-        if (!(f[k].distance > 0.25 * now) || f[k].distance > 4 * now) continue;
+        f[k].distance = fmin(fmax(f[k].distance, 0.3 * now), 3 * now);
         size_t same = 0;
         while (same < used && fabs(f[same].n[0] * f[k].n[1] - f[same].n[1] * f[k].n[0]) > 1e-9) same++;
         if (same == used) f[used++] = f[k];
@@ -59,6 +84,7 @@ static void fit(double a[3], facing *f, size_t count)
         fit_two(a, &f[0], &f[1]);
         return;
     }
+    if (used == 3 && fit_three(a, f)) return;
     for (int turn = 0; turn < (used > 1 ? 16 : 1); turn++)
         for (size_t k = 0; k < used; k++) {
             const double ratio = f[k].distance / half_size(a, f[k].n);
