@@ -185,7 +185,7 @@ typedef struct ab_trace {
     double stiffness; /* Pa, P-wave modulus of the body's material */
     double cell;      /* m, cell size of the grid */
     size_t count, ld;
-    const double *position;      /* m, of the node; dimension rows */
+    const double *position;      /* m from the grid's corner, of the node; dimension rows */
     const size_t *stencil_start; /* count + 1: on which dofs the body's velocity at node i hangs, and with which weights (a material-point */
     const uint32_t *stencil_dof; /* body: the node itself, weight 1; a finite-element body: the nodes of its elements around it) */
     const double *stencil_weight;
@@ -195,7 +195,7 @@ typedef struct ab_trace {
     const double *area_vector;   /* sum_p V_p G_ip, m2 (m in plane strain), out of the body; NULL unless needed */
     const size_t *near_start;    /* count + 1; NULL unless needed */
     size_t near_ld;
-    const double *near_position; /* m; dimension rows */
+    const double *near_position; /* m from the grid's corner; dimension rows */
     const double *near_extent;   /* m2; symmetric: (xx, yy, xy) or (xx, yy, zz, xy, yz, zx) */
 } ab_trace;
 
@@ -210,6 +210,7 @@ typedef struct ab_points {
     size_t *a_start, *b_start;   /* count + 1: stencil of point i is a_dof[a_start[i]] .. a_dof[a_start[i+1]-1] */
     uint32_t *a_dof, *b_dof;
     double *a_weight, *b_weight; /* sum to 1 per point and side */
+    double *position;            /* m, where the impulse acts; dimension rows */
     double *normal;              /* dimension rows, unit */
     double *gap;                 /* m, negative: penetration; 0 where it is not known */
     double *area;                /* m2 (m in plane strain) */

@@ -1,0 +1,280 @@
+/* contact.c: every contact of a scene in one step: find the points, then projected Gauss-Seidel over them in a fixed order: ask the response for the
+ * impulse each point wants, change both sides' dofs by the difference, until the impulses stand still (numerics 4). Linear momentum is kept because a
+ * point takes from one side what it gives to the other. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/contact.h"
+
+enum { MOST_ROUNDS = 200 };
+static const double STANDSTILL = 1e-13; /* change of an impulse against the largest one of the step */
+
+typedef struct contact_all {
+    ab_interaction face; /* first */
+    const ab_scene *scene;
+    contact_pair *pairs;
+    size_t count;
+    ab_contact_totals *totals;
+    double *friction, *contact; /* per body */
+    long found_step;            /* step whose points are at hand; -1: none */
+} contact_all;
+
+static void relative_velocity(const contact_pair *pair, const ab_dofs *a, const ab_dofs *b, bool old, size_t i, double v[2])
+{
+    const ab_points *p = &pair->points.view;
+    v[0] = v[1] = 0.0;
+    for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
+        const double *u = old ? a->velocity_old + (size_t)p->a_dof[s] * a->old_stride : a->velocity + (size_t)p->a_dof[s] * a->velocity_stride;
+        v[0] += p->a_weight[s] * u[0];
+        v[1] += p->a_weight[s] * u[1];
+    }
+    for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
+        const double *u = old ? b->velocity_old + (size_t)p->b_dof[s] * b->old_stride : b->velocity + (size_t)p->b_dof[s] * b->velocity_stride;
+        v[0] -= p->b_weight[s] * u[0];
+        v[1] -= p->b_weight[s] * u[1];
+    }
+}
+
+/* Applies what point i wants beyond what its dofs have felt. Returns the size of the change, N s. */
+static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size_t i)
+{
+    ab_points *p = &pair->points.view;
+    double j[2];
+    for (size_t c = 0; c < 2; ++c) {
+        j[c] = p->impulse[c * p->ld + i] - pair->points.applied[c * p->ld + i];
+        pair->points.applied[c * p->ld + i] = p->impulse[c * p->ld + i];
+    }
+    if (j[0] == 0.0 && j[1] == 0.0) return 0.0;
+    for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
+        const size_t k = p->a_dof[s];
+        for (size_t c = 0; c < 2; ++c) a->velocity[k * a->velocity_stride + c] -= p->a_weight[s] * j[c] * a->inverse_mass[k * a->mass_stride + c];
+    }
+    for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
+        const size_t k = p->b_dof[s];
+        for (size_t c = 0; c < 2; ++c) b->velocity[k * b->velocity_stride + c] += p->b_weight[s] * j[c] * b->inverse_mass[k * b->mass_stride + c];
+    }
+    return hypot(j[0], j[1]);
+}
+
+static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, ab_report *report)
+{
+    return ab_report_failure(report, "contact of '%s' and '%s': %s failed: %s", pair->a->spec->name, pair->b->spec->name, what, service->message[0] ? service->message : "no reason given");
+}
+
+/* One round over a pair's points. *change, *largest: N s. */
+static ab_status round_over(contact_pair *pair, double *change, double *largest, ab_report *report)
+{
+    contact_points *points = &pair->points;
+    ab_points *p = &points->view;
+    ab_dofs a, b;
+    pair->a->ops->dofs(pair->a, &a);
+    pair->b->ops->dofs(pair->b, &b);
+    const ab_contact_ops *ops = &pair->spec->responder->contact;
+    double *relative = (double *)(uintptr_t)p->relative_velocity;
+    const size_t batch = points->shared ? 1 : p->count;
+    for (size_t first = 0; first < p->count; first += batch) {
+        for (size_t i = first; i < first + batch; ++i) {
+            double v[2];
+            relative_velocity(pair, &a, &b, false, i, v);
+            relative[i] = v[0];
+            relative[p->ld + i] = v[1];
+        }
+        if (ops->respond(pair->responder, p, first, batch) != 0) return complain(pair, &pair->responder_service, "the response", report);
+        for (size_t i = first; i < first + batch; ++i) {
+            *change = fmax(*change, apply(pair, &a, &b, i));
+            *largest = fmax(*largest, hypot(p->impulse[i], p->impulse[p->ld + i]));
+        }
+    }
+    return AB_OK;
+}
+
+static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report)
+{
+    contact_points *points = &pair->points;
+    AB_TRY(contact_shared_nodes(pair, report));
+    if (!contact_points_reserve(points, pair->node_count, pair->node_count)) return ab_report_failure(report, "no memory for %zu contact points", pair->node_count);
+    ab_points *p = &points->view;
+    p->count = 0;
+    p->time = step->time;
+    p->dt = step->dt;
+    if (pair->node_count) {
+        ab_trace a = {0}, b = {0};
+        const uint32_t needs = pair->spec->finder->class_.needs;
+        AB_TRY(pair->a->ops->trace(pair->a, pair->nodes_a, pair->node_count, needs, &a, report));
+        AB_TRY(pair->b->ops->trace(pair->b, pair->nodes_b, pair->node_count, needs, &b, report));
+        p->cell = a.cell;
+        if (pair->spec->finder->contact.find(pair->finder, &a, &b, p) != 0) return complain(pair, &pair->finder_service, "finding", report);
+    }
+    return AB_OK;
+}
+
+/* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
+static ab_status prepare(contact_pair *pair, ab_report *report)
+{
+    contact_points *points = &pair->points;
+    ab_points *p = &points->view;
+    ab_dofs a, b;
+    pair->a->ops->dofs(pair->a, &a);
+    pair->b->ops->dofs(pair->b, &b);
+    if (!contact_points_prepare(points, &a, &b)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
+    for (size_t c = 0; c < 2; ++c) {
+        memset(p->impulse + c * p->ld, 0, p->count * sizeof(double));
+        memset(points->applied + c * p->ld, 0, p->count * sizeof(double));
+    }
+    for (size_t i = 0; i < p->count; ++i) {
+        double v[2];
+        relative_velocity(pair, &a, &b, true, i, v);
+        points->relative_old[i] = v[0];
+        points->relative_old[p->ld + i] = v[1];
+    }
+    return AB_OK;
+}
+
+/* Forces, work and penetration of the step just solved. The work of an impulse is impulse . (old + new relative velocity)/2, exact for what it
+ * does to the dofs' kinetic energy; its normal part is contact loss, its tangential part friction. */
+static void book(contact_all *all, size_t number, const ab_step *step)
+{
+    contact_pair *pair = all->pairs + number;
+    contact_points *points = &pair->points;
+    const ab_points *p = &points->view;
+    ab_contact_totals *t = all->totals + number;
+    const double friction_work = t->friction_work, contact_work = t->contact_work;
+    *t = (ab_contact_totals){.points = p->count};
+    ab_dofs a, b;
+    pair->a->ops->dofs(pair->a, &a);
+    pair->b->ops->dofs(pair->b, &b);
+    double friction = 0.0, loss = 0.0, tangential = 0.0;
+    for (size_t i = 0; i < p->count; ++i) {
+        const double jx = p->impulse[i], jy = p->impulse[p->ld + i], nx = p->normal[i], ny = p->normal[p->ld + i];
+        if (p->gap[i] < 0.0) t->penetration = fmax(t->penetration, -p->gap[i]);
+        if (jx == 0.0 && jy == 0.0) continue;
+        double v[2];
+        relative_velocity(pair, &a, &b, false, i, v);
+        const double mx = 0.5 * (v[0] + points->relative_old[i]), my = 0.5 * (v[1] + points->relative_old[p->ld + i]);
+        const double jn = jx * nx + jy * ny, jt = jy * nx - jx * ny, mn = mx * nx + my * ny, mt = my * nx - mx * ny;
+        friction += jt * mt;
+        loss += jn * mn;
+        t->impulse[0] += jx;
+        t->impulse[1] += jy;
+        t->normal_force += fabs(jn) / step->dt;
+        tangential += jt / step->dt;
+        t->moment += ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
+        ++t->active;
+    }
+    t->friction_force = fabs(tangential);
+    for (int c = 0; c < 2; ++c) t->force[c] = t->impulse[c] / step->dt;
+    t->friction_work = friction_work + friction;
+    t->contact_work = contact_work + loss;
+    for (int side = 0; side < 2; ++side) {
+        all->friction[pair->spec->body[side]] += 0.5 * friction;
+        all->contact[pair->spec->body[side]] += 0.5 * loss;
+    }
+}
+
+static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report)
+{
+    contact_all *all = (contact_all *)face;
+    if (all->found_step != step->number) {
+        for (size_t k = 0; k < all->count; ++k) AB_TRY(find(all->pairs + k, step, report));
+        all->found_step = step->number;
+    }
+    size_t active = 0;
+    bool again = false;
+    for (size_t k = 0; k < all->count; ++k) {
+        contact_pair *pair = all->pairs + k;
+        if (!pair->points.view.count) continue;
+        AB_TRY(prepare(pair, report));
+        ++active;
+        again = again || pair->points.shared || pair->points.held;
+    }
+    again = again || active > 1;
+    for (int round = 0; active && round < (again ? MOST_ROUNDS : 1); ++round) {
+        double change = 0.0, largest = 0.0;
+        for (size_t k = 0; k < all->count; ++k)
+            if (all->pairs[k].points.view.count) AB_TRY(round_over(all->pairs + k, &change, &largest, report));
+        if (change <= STANDSTILL * largest) break;
+    }
+    if (stage == AB_STAGE_DYNAMIC)
+        for (size_t k = 0; k < all->count; ++k) {
+            book(all, k, step);
+            contact_points_remember(&all->pairs[k].points);
+        }
+    return AB_OK;
+}
+
+static const ab_contact_totals *totals(const ab_interaction *face) { return ((const contact_all *)face)->totals; }
+
+static void book_body(const ab_interaction *face, size_t body, double *friction, double *contact)
+{
+    const contact_all *all = (const contact_all *)face;
+    *friction = all->friction[body];
+    *contact = all->contact[body];
+}
+
+static void destroy(ab_interaction *face)
+{
+    contact_all *all = (contact_all *)face;
+    for (size_t k = 0; all->pairs && k < all->count; ++k) {
+        contact_pair *pair = all->pairs + k;
+        if (pair->finder && pair->spec->finder->class_.destroy) pair->spec->finder->class_.destroy(pair->finder);
+        if (pair->responder && pair->spec->responder->class_.destroy) pair->spec->responder->class_.destroy(pair->responder);
+        contact_points_destroy(&pair->points);
+        free(pair->tiles), free(pair->nodes_a), free(pair->nodes_b);
+    }
+    free(all->pairs), free(all->totals), free(all->friction), free(all->contact), free(all);
+}
+
+/* host->reserve for finders that make more points than there are shared nodes; context is the ab_service, found again through the view. */
+static int reserve(void *context, ab_points *view, size_t points_more, size_t stencil_more)
+{
+    (void)context;
+    contact_points *points = (contact_points *)view; /* view is its first member */
+    const size_t stencil = points_more + stencil_more + (view->count ? view->a_start[view->count] + view->b_start[view->count] : 0);
+    return contact_points_reserve(points, view->count + points_more, stencil) ? 0 : -1;
+}
+
+static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, const ab_value *settings, ab_service *service, void **self, ab_report *report)
+{
+    char who[96];
+    snprintf(who, sizeof who, "contact '%s' of '%s' and '%s'", loaded->class_.name, pair->a->spec->name, pair->b->spec->name);
+    ab_service_init(service, who);
+    service->host.reserve = reserve;
+    if (loaded->class_.create && loaded->class_.create(&service->host, settings, self) != 0)
+        return ab_report_error(report, pair->spec->mark, "%s refused its settings: %s", who, service->message[0] ? service->message : "no reason given");
+    return AB_OK;
+}
+
+ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report)
+{
+    contact_all *all = calloc(1, sizeof *all);
+    if (!all) return ab_report_failure(report, "no memory for the contacts");
+    all->face = (ab_interaction){destroy, solve, totals, book_body};
+    all->scene = scene;
+    all->found_step = -1;
+    all->pairs = calloc(scene->contact_count + 1, sizeof *all->pairs);
+    all->totals = calloc(scene->contact_count + 1, sizeof *all->totals);
+    all->friction = calloc(scene->body_count + 1, sizeof *all->friction);
+    all->contact = calloc(scene->body_count + 1, sizeof *all->contact);
+    ab_status status = all->pairs && all->totals && all->friction && all->contact ? AB_OK : ab_report_failure(report, "no memory for the contacts");
+    for (size_t k = 0; status == AB_OK && k < scene->contact_count; ++k) {
+        contact_pair *pair = all->pairs + k;
+        const ab_contact_spec *spec = scene->contacts + k;
+        pair->spec = spec;
+        pair->a = domains[spec->body[0]];
+        pair->b = domains[spec->body[1]];
+        all->count = k + 1;
+        pair->points.view.struct_size = sizeof(ab_points);
+        pair->points.view.dimension = 2;
+        for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s) pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
+        status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
+        if (status == AB_OK) status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);
+    }
+    if (status != AB_OK) {
+        destroy(&all->face);
+        return status;
+    }
+    *interaction = &all->face;
+    return AB_OK;
+}

@@ -1,0 +1,169 @@
+/* points.c: arrays of contact points: room, effective masses, history. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/contact.h"
+
+static bool resize(void *pointer, size_t old_rows, size_t rows, size_t old_ld, size_t ld, size_t size)
+{
+    char **p = pointer;
+    char *more = aligned_alloc(64, (rows * ld * size + 63) / 64 * 64);
+    if (!more) return false;
+    memset(more, 0, (rows * ld * size + 63) / 64 * 64);
+    for (size_t r = 0; *p && r < old_rows; ++r) memcpy(more + r * ld * size, *p + r * old_ld * size, old_ld * size);
+    free(*p);
+    *p = more;
+    return true;
+}
+
+bool contact_points_reserve(contact_points *points, size_t count, size_t stencil)
+{
+    ab_points *v = &points->view;
+    if (count > v->capacity || !v->normal) {
+        const size_t old = v->capacity, n = (2 * count + 64) / 8 * 8, s = points->states ? points->states : 1;
+        double *state0 = (double *)(uintptr_t)v->state0, *relative = (double *)(uintptr_t)v->relative_velocity, *mn = (double *)(uintptr_t)v->normal_mass,
+               *mt = (double *)(uintptr_t)v->tangential_mass;
+        if (!resize(&v->key, 1, 1, old, n, sizeof *v->key) || !resize(&v->normal, 2, 2, old, n, sizeof(double)) || !resize(&v->position, 2, 2, old, n, sizeof(double)) || !resize(&v->gap, 1, 1, old, n, sizeof(double)) ||
+            !resize(&v->area, 1, 1, old, n, sizeof(double)) || !resize(&relative, 2, 2, old, n, sizeof(double)) || !resize(&mn, 1, 1, old, n, sizeof(double)) ||
+            !resize(&mt, 1, 1, old, n, sizeof(double)) || !resize(&v->impulse, 2, 2, old, n, sizeof(double)) || !resize(&state0, s, s, old, n, sizeof(double)) ||
+            !resize(&v->state1, s, s, old, n, sizeof(double)) || !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) ||
+            !resize(&points->applied, 2, 2, old, n, sizeof(double)) || !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
+            !resize(&v->b_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)))
+            return false;
+        v->state0 = state0;
+        v->relative_velocity = relative;
+        v->normal_mass = mn;
+        v->tangential_mass = mt;
+        v->capacity = v->ld = n;
+    }
+    if (stencil > points->stencil_a || !v->a_dof) {
+        const size_t old = points->stencil_a, n = 2 * stencil + 64;
+        if (!resize(&v->a_dof, 1, 1, old, n, sizeof(uint32_t)) || !resize(&v->a_weight, 1, 1, old, n, sizeof(double))) return false;
+        points->stencil_a = n;
+    }
+    if (stencil > points->stencil_b || !v->b_dof) {
+        const size_t old = points->stencil_b, n = 2 * stencil + 64;
+        if (!resize(&v->b_dof, 1, 1, old, n, sizeof(uint32_t)) || !resize(&v->b_weight, 1, 1, old, n, sizeof(double))) return false;
+        points->stencil_b = n;
+    }
+    return true;
+}
+
+void contact_points_destroy(contact_points *points)
+{
+    ab_points *v = &points->view;
+    free(v->key), free(v->normal), free(v->position), free(v->gap), free(v->area), free((void *)(uintptr_t)v->relative_velocity), free((void *)(uintptr_t)v->normal_mass);
+    free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1), free(points->relative_old);
+    free(points->applied), free(v->a_start), free(v->b_start);
+    free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
+}
+
+/* Inverse effective mass in direction d: sum w^2 d.M^-1.d over both sides. */
+static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, double dx, double dy, bool *held)
+{
+    double sum = 0.0;
+    for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s) {
+        const double *m = a->inverse_mass + (size_t)v->a_dof[s] * a->mass_stride, w = v->a_weight[s];
+        sum += w * w * (dx * dx * m[0] + dy * dy * m[1]);
+        if (m[0] != m[1]) *held = true;
+    }
+    for (size_t s = v->b_start[i]; s < v->b_start[i + 1]; ++s) {
+        const double *m = b->inverse_mass + (size_t)v->b_dof[s] * b->mass_stride, w = v->b_weight[s];
+        sum += w * w * (dx * dx * m[0] + dy * dy * m[1]);
+        if (m[0] != m[1]) *held = true;
+    }
+    return sum;
+}
+
+static int compare_dofs(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* True when some dof serves more than one point of this pair. Stencils that are one node each, in ascending order, never do. */
+static int shares_dofs(const size_t *start, const uint32_t *dof, size_t count)
+{
+    bool ascending = start[count] == count;
+    for (size_t k = 1; ascending && k < count; ++k) ascending = dof[k] > dof[k - 1];
+    if (ascending) return 0;
+    const size_t uses = start[count];
+    uint32_t *sorted = malloc((uses + 1) * sizeof *sorted);
+    if (!sorted) return -1;
+    memcpy(sorted, dof, uses * sizeof *sorted);
+    qsort(sorted, uses, sizeof *sorted, compare_dofs);
+    int shared = 0;
+    for (size_t k = 1; k < uses && !shared; ++k) shared = sorted[k] == sorted[k - 1];
+    free(sorted);
+    return shared;
+}
+
+/* Brings the states of points that were there in the last step (same key) into state0; new ones begin at 0. */
+static void recall(contact_points *points)
+{
+    ab_points *v = &points->view;
+    double *state0 = (double *)(uintptr_t)v->state0;
+    for (size_t i = 0; i < v->count; ++i) {
+        size_t low = 0, high = points->old_count;
+        while (low < high) {
+            const size_t middle = (low + high) / 2;
+            if (points->old_key[middle] < v->key[i]) low = middle + 1;
+            else high = middle;
+        }
+        const bool known = low < points->old_count && points->old_key[low] == v->key[i];
+        for (size_t s = 0; s < points->states; ++s) state0[s * v->ld + i] = known ? points->old_state[s * points->old_capacity + low] : 0.0;
+    }
+}
+
+typedef struct remembered { uint64_t key; uint32_t point; } remembered;
+
+static int compare_remembered(const void *a, const void *b)
+{
+    const remembered *x = a, *y = b;
+    return (x->key > y->key) - (x->key < y->key);
+}
+
+void contact_points_remember(contact_points *points)
+{
+    ab_points *v = &points->view;
+    if (!points->states) return;
+    remembered *list = malloc((v->count + 1) * sizeof *list);
+    if (!list) {
+        points->old_count = 0;
+        return;
+    }
+    for (size_t i = 0; i < v->count; ++i) list[i] = (remembered){v->key[i], (uint32_t)i};
+    qsort(list, v->count, sizeof *list, compare_remembered);
+    if (v->count > points->old_capacity || !points->old_key) {
+        free(points->old_key), free(points->old_state);
+        points->old_capacity = v->capacity;
+        points->old_key = malloc(points->old_capacity * sizeof *points->old_key);
+        points->old_state = malloc(points->old_capacity * points->states * sizeof *points->old_state);
+    }
+    points->old_count = points->old_key && points->old_state ? v->count : 0;
+    for (size_t k = 0; k < points->old_count; ++k) {
+        points->old_key[k] = list[k].key;
+        for (size_t s = 0; s < points->states; ++s) points->old_state[s * points->old_capacity + k] = v->state1[s * v->ld + list[k].point];
+    }
+    free(list);
+}
+
+bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_dofs *b)
+{
+    ab_points *v = &points->view;
+    double *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
+    bool held = false;
+    for (size_t i = 0; i < v->count; ++i) {
+        const double nx = v->normal[i], ny = v->normal[v->ld + i];
+        const double in = inverse_mass(v, i, a, b, nx, ny, &held), it = inverse_mass(v, i, a, b, -ny, nx, &held);
+        mn[i] = in > 0.0 ? 1.0 / in : 0.0;
+        mt[i] = it > 0.0 ? 1.0 / it : 0.0;
+    }
+    const int shared_a = shares_dofs(v->a_start, v->a_dof, v->count), shared_b = shares_dofs(v->b_start, v->b_dof, v->count);
+    if (shared_a < 0 || shared_b < 0) return false;
+    points->shared = shared_a || shared_b;
+    points->held = held;
+    if (points->states) recall(points);
+    return true;
+}

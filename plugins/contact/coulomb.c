@@ -1,0 +1,80 @@
+/* coulomb.c: answers contact points with Coulomb friction: no approach beyond the gap, no slip below the limit
+ * friction * normal impulse + adhesion * area * dt, never more than shear_cap * area * dt. */
+#include "abut_plugin.h"
+
+#include <math.h>
+
+typedef struct coulomb {
+    const ab_host *host;
+    double friction, adhesion, shear_cap, tensile_strength;
+} coulomb;
+
+static const ab_param PARAMS[] = {
+    {"friction", "1", "coefficient of friction", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+    {"adhesion", "Pa", "shear stress carried without normal force while the bodies touch", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+    {"shear_cap", "Pa", "largest shear stress (alpha s_u); 0: none", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+    {"tensile_strength", "Pa", "tension carried while the bodies touch; needs adhesion", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+};
+
+static int create(const ab_host *host, const ab_value *settings, void **self)
+{
+    if (settings[3].real > 0.0 && !(settings[1].real > 0.0)) return host->message(host->context, "tensile_strength needs adhesion > 0"), -1;
+    coulomb *law = host->allocate(host->context, sizeof *law);
+    if (!law) return -1;
+    *law = (coulomb){host, settings[0].real, settings[1].real, settings[2].real, settings[3].real};
+    *self = law;
+    return 0;
+}
+
+static void destroy(void *self)
+{
+    coulomb *law = self;
+    law->host->release(law->host->context, law);
+}
+
+static int respond(void *self, ab_points *p, size_t first, size_t count)
+{
+    const coulomb *law = self;
+    const size_t ld = p->ld, d = p->dimension;
+    for (size_t i = first; i < first + count; ++i) {
+        double approach = 0.0, normal_impulse = 0.0;
+        for (size_t c = 0; c < d; ++c) {
+            approach += p->relative_velocity[c * ld + i] * p->normal[c * ld + i];
+            normal_impulse += p->impulse[c * ld + i] * p->normal[c * ld + i];
+        }
+        const double gap = p->gap[i], area_dt = p->area[i] * p->dt;
+        const int touching = gap <= 0.0;
+        const double tension = touching ? law->tensile_strength * area_dt : 0.0;
+        const double lambda = fmax(-tension, normal_impulse + p->normal_mass[i] * (approach - fmax(gap, 0.0) / p->dt));
+        double limit = law->friction * fmax(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
+        if (law->shear_cap > 0.0) limit = fmin(limit, law->shear_cap * area_dt);
+        double slip[3] = {0}, size = 0.0; /* tangential impulse that would end the slip */
+        for (size_t c = 0; c < d; ++c) {
+            const double v = p->relative_velocity[c * ld + i] - approach * p->normal[c * ld + i];
+            slip[c] = p->impulse[c * ld + i] - normal_impulse * p->normal[c * ld + i] + p->tangential_mass[i] * v;
+            size += slip[c] * slip[c];
+        }
+        size = sqrt(size);
+        const double scale = size > limit ? limit / size : 1.0;
+        for (size_t c = 0; c < d; ++c) p->impulse[c * ld + i] = lambda * p->normal[c * ld + i] + scale * slip[c];
+    }
+    return 0;
+}
+
+static const ab_contact_ops OPS = {sizeof OPS, NULL, respond};
+static const ab_class CLASS = {
+    .struct_size = sizeof CLASS,
+    .kind = AB_CONTACT,
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .gives = AB_GIVE_IMPULSE,
+    .nparam = sizeof PARAMS / sizeof *PARAMS,
+    .name = "coulomb",
+    .help = "no approach beyond the gap; Coulomb friction with adhesion and a shear cap",
+    .reference = "projected Gauss-Seidel over contact points, numerics section 4.4",
+    .param = PARAMS,
+    .create = create,
+    .destroy = destroy,
+    .ops = &OPS,
+};
+static const ab_class *const CLASSES[] = {&CLASS};
+const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "coulomb", "1.0", "MIT", CLASSES};

@@ -1,0 +1,168 @@
+/* multi_velocity.c: finds contact points on the grid nodes that two bodies share (multi-velocity field: Bardenhagen et al. 2000, Huang et al. 2011), with a
+ * collinear normal and, unless it is switched off, the gap between the two bodies' material along it. */
+#include "abut_plugin.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NORMAL_AVERAGE, NORMAL_MASS_GRADIENT, NORMAL_VOLUME_GRADIENT, NORMAL_STIFFER };
+
+typedef struct multi_velocity {
+    const ab_host *host;
+    int64_t normal; /* -1: fixed direction */
+    double direction[3];
+    int gap;              /* 0: distance, 1: none */
+    double corner_cosine; /* normals that disagree by more are at a corner */
+} multi_velocity;
+
+static const ab_param PARAMS[] = {
+    {"normal", "1", "normal of a shared node: average of both bodies' (with the corner rule), from the gradient of mass or of volume, the stiffer body's, or a direction out of the first body",
+     "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
+    {"gap", "1", "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical form: early and lossy)", "distance|none",
+     AB_CHOICE, 0, 0, 0, 0},
+    {"corner_angle", "rad", "where the two normals disagree by more than this, the body with the larger area at the node gives the normal (average only)", NULL, AB_REAL, 0, 0.35, 0, 3.2},
+};
+
+static int create(const ab_host *host, const ab_value *settings, void **self)
+{
+    multi_velocity *mv = host->allocate(host->context, sizeof *mv);
+    if (!mv) return -1;
+    mv->host = host;
+    mv->normal = settings[0].integer;
+    if (mv->normal < 0) memcpy(mv->direction, settings[0].table, sizeof mv->direction);
+    mv->gap = (int)settings[1].integer;
+    mv->corner_cosine = cos(settings[2].real);
+    *self = mv;
+    return 0;
+}
+
+static void destroy(void *self)
+{
+    multi_velocity *mv = self;
+    mv->host->release(mv->host->context, mv);
+}
+
+static double unit(double *v, uint32_t dimension)
+{
+    double square = 0.0;
+    for (uint32_t c = 0; c < dimension; ++c) square += v[c] * v[c];
+    const double length = sqrt(square);
+    if (length > 0.0)
+        for (uint32_t c = 0; c < dimension; ++c) v[c] /= length;
+    return length;
+}
+
+/* The normal at shared node i, out of a; false where neither body has a direction there (deep inside both). *area: tributary, m2. */
+static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area)
+{
+    const uint32_t d = a->dimension;
+    double na[3] = {0}, nb[3] = {0}, va[3] = {0}, vb[3] = {0};
+    for (uint32_t c = 0; c < d; ++c) {
+        va[c] = na[c] = a->area_vector[c * a->ld + i];
+        vb[c] = nb[c] = b->area_vector[c * b->ld + i];
+    }
+    const double la = unit(na, d), lb = unit(nb, d);
+    n[0] = n[1] = n[2] = 0.0;
+    if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
+    else if (mv->normal == NORMAL_STIFFER) {
+        const int first = a->stiffness >= b->stiffness;
+        for (uint32_t c = 0; c < d; ++c) n[c] = first ? na[c] : -nb[c];
+    } else if (mv->normal == NORMAL_MASS_GRADIENT) {
+        for (uint32_t c = 0; c < d; ++c) n[c] = a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i];
+    } else if (mv->normal == NORMAL_VOLUME_GRADIENT) {
+        for (uint32_t c = 0; c < d; ++c) n[c] = va[c] - vb[c];
+    } else {
+        double cosine = 0.0;
+        for (uint32_t c = 0; c < d; ++c) cosine -= na[c] * nb[c];
+        const int corner = cosine < mv->corner_cosine;
+        for (uint32_t c = 0; c < d; ++c) n[c] = !corner ? na[c] - nb[c] : la >= lb ? na[c] : -nb[c];
+    }
+    if (!(unit(n, d) > 0.0)) return 0;
+    double along_a = 0.0, along_b = 0.0;
+    for (uint32_t c = 0; c < d; ++c) {
+        along_a += va[c] * n[c];
+        along_b -= vb[c] * n[c];
+    }
+    *area = fmax(0.0, fmin(along_a, along_b));
+    return 1;
+}
+
+/* How far the material of a body reaches along +-n from the node: the largest of sign n.(x - x_i) + half size, over the points beside the node (within half
+ * a cell across the normal); over all points near it where none is. */
+static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
+{
+    const uint32_t d = t->dimension;
+    const size_t ld = t->near_ld;
+    double beside = -INFINITY, all = -INFINITY;
+    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+        double along = 0.0, square = 0.0;
+        for (uint32_t c = 0; c < d; ++c) {
+            const double r = t->near_position[c * ld + k] - t->position[c * t->ld + i];
+            along += r * n[c];
+            square += r * r;
+        }
+        const double *e = t->near_extent + k;
+        const double half2 = d == 2 ? n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]
+                                    : n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + n[2] * n[2] * e[2 * ld] +
+                                          2.0 * (n[0] * n[1] * e[3 * ld] + n[1] * n[2] * e[4 * ld] + n[2] * n[0] * e[5 * ld]);
+        const double far = sign * along + sqrt(fmax(half2, 0.0));
+        const double across2 = square - along * along;
+        if (far > all) all = far;
+        if (across2 <= 0.25 * t->cell * t->cell && far > beside) beside = far;
+    }
+    return beside > -INFINITY ? beside : all;
+}
+
+static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out)
+{
+    const multi_velocity *mv = self;
+    if (a->count > out->capacity && mv->host->reserve(mv->host->context, out, a->count, a->stencil_start[a->count] + b->stencil_start[b->count]) != 0) return -1;
+    const uint32_t d = a->dimension;
+    size_t n = 0;
+    out->a_start[0] = out->b_start[0] = 0;
+    for (size_t i = 0; i < a->count; ++i) {
+        double normal[3], area = 0.0, gap = 0.0;
+        if (!node_normal(mv, a, b, i, normal, &area)) continue;
+        if (mv->gap == 0) gap = -reach(a, i, normal, 1.0) - reach(b, i, normal, -1.0);
+        size_t sa = out->a_start[n], sb = out->b_start[n];
+        for (size_t s = a->stencil_start[i]; s < a->stencil_start[i + 1]; ++s, ++sa) {
+            out->a_dof[sa] = a->stencil_dof[s];
+            out->a_weight[sa] = a->stencil_weight[s];
+        }
+        for (size_t s = b->stencil_start[i]; s < b->stencil_start[i + 1]; ++s, ++sb) {
+            out->b_dof[sb] = b->stencil_dof[s];
+            out->b_weight[sb] = b->stencil_weight[s];
+        }
+        for (uint32_t c = 0; c < d; ++c) {
+            out->normal[c * out->ld + n] = normal[c];
+            out->position[c * out->ld + n] = a->position[c * a->ld + i];
+        }
+        out->gap[n] = gap;
+        out->area[n] = area;
+        out->key[n] = a->key[i];
+        ++n;
+        out->a_start[n] = sa;
+        out->b_start[n] = sb;
+    }
+    out->count = n;
+    return 0;
+}
+
+static const ab_contact_ops OPS = {sizeof OPS, find, NULL};
+static const ab_class CLASS = {
+    .struct_size = sizeof CLASS,
+    .kind = AB_CONTACT,
+    .spaces = AB_PLANE_STRAIN | AB_SPACE_3D,
+    .needs = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS,
+    .gives = AB_GIVE_POINTS,
+    .nparam = sizeof PARAMS / sizeof *PARAMS,
+    .name = "multi-velocity",
+    .help = "contact points on the grid nodes that two bodies share, with gap",
+    .reference = "Bardenhagen et al. 2000; Huang et al. 2011; gap between material points as in numerics section 4.1",
+    .param = PARAMS,
+    .create = create,
+    .destroy = destroy,
+    .ops = &OPS,
+};
+static const ab_class *const CLASSES[] = {&CLASS};
+const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "multi-velocity", "1.0", "MIT", CLASSES};
