@@ -1,0 +1,49 @@
+/* scene_reader.h: what the files that read a scene share; nobody else includes it. */
+#ifndef AB_SCENE_READER_H
+#define AB_SCENE_READER_H
+
+#include "core/scene.h"
+#include "core/scene_keys.h"
+
+struct ab_scene_private {
+    ab_document *document;
+    ab_formulas *formulas;
+    ab_units *units;
+    ab_arena *arena;
+};
+
+typedef struct ab_scene_reader {
+    ab_reader base;
+    ab_scene *scene;
+    ab_registry *registry;
+} ab_scene_reader;
+
+/* One section each; `node` NULL: not written. Mistakes go to the report; what could not be read keeps its default. */
+void ab_scene_take_constants(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_damping(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_time(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_grid(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_materials(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_bodies(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_contacts(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_loads(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_monitors(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_history(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_output(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_expects(ab_scene_reader *reader, const ab_node *node);
+
+bool ab_scene_take_shape(ab_scene_reader *reader, const ab_node *node, const char *where, ab_shape_spec *shape);
+bool ab_scene_take_where(ab_scene_reader *reader, const ab_node *node, const char *where, ab_where *set);
+/* Bounds of a shape; false when it could not be read. */
+bool ab_shape_bounds(const ab_shape_spec *shape, double low[2], double high[2]);
+
+/* Index of a body or material by name, or -1 with the mistake reported. `where` is the place of the name. */
+int ab_scene_body_named(ab_scene_reader *reader, const char *name, ab_mark mark, const char *where);
+/* A declared state of the material of a body (SIZE_MAX: of any body), by name; NULL: none. */
+const ab_state *ab_scene_state_named(const ab_scene *scene, size_t body, const char *name);
+/* True when node is a list; else the mistake is reported. */
+bool ab_scene_is_list(ab_scene_reader *reader, const ab_node *node, const char *where, const char *of);
+/* The text of a scalar, or NULL with "where must be WANTED" reported. */
+const char *ab_scene_word(ab_scene_reader *reader, const ab_node *node, const char *where, const char *wanted);
+
+#endif
