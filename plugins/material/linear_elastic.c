@@ -23,22 +23,25 @@ static void destroy(void *self) {
     made->host->release(made->host->context, self);
 }
 
-/* Inlined with a constant count and ld for blocks of eight, so that each loop is one or two vector instructions. */
-static inline void stress(double lambda, double mu, size_t count, size_t ld, uint32_t components, const double *restrict strain,
+/* Every sum has one product, so that however the compiler fuses them, one item has the bits it has among many. */
+static inline void stress(double lambda, double two_mu, double mu, size_t count, size_t ld, const double *restrict strain,
                           const double *restrict stress0, double *restrict stress1) {
     for (size_t i = 0; i < count; i++) {
-        const double mean = lambda * (strain[i] + strain[ld + i] + strain[2 * ld + i]);
-        for (size_t c = 0; c < 3; c++) stress1[c * ld + i] = stress0[c * ld + i] + (mean + 2 * mu * strain[c * ld + i]);
+        const double volume = strain[i] + strain[ld + i] + strain[2 * ld + i];
+        stress1[i] = stress0[i] + lambda * volume + two_mu * strain[i];
+        stress1[ld + i] = stress0[ld + i] + lambda * volume + two_mu * strain[ld + i];
+        stress1[2 * ld + i] = stress0[2 * ld + i] + lambda * volume + two_mu * strain[2 * ld + i];
+        stress1[3 * ld + i] = stress0[3 * ld + i] + mu * strain[3 * ld + i];
     }
-    for (size_t c = 3; c < components; c++)
-        for (size_t i = 0; i < count; i++) stress1[c * ld + i] = stress0[c * ld + i] + mu * strain[c * ld + i];
 }
 
 static int update(void *self, ab_batch *b) {
     const law *l = self;
-    if (b->count == 8 && b->ld == 8 && b->components == 4) stress(l->lambda, l->mu, 8, 8, 4, b->strain_increment, b->stress0, b->stress1);
-    else if (b->count == 8 && b->ld == 8) stress(l->lambda, l->mu, 8, 8, 6, b->strain_increment, b->stress0, b->stress1);
-    else stress(l->lambda, l->mu, b->count, b->ld, b->components, b->strain_increment, b->stress0, b->stress1);
+    const double *strain = b->strain_increment;
+    if (b->count == 8 && b->ld == 8) stress(l->lambda, 2 * l->mu, l->mu, 8, 8, strain, b->stress0, b->stress1); /* constants make vector code */
+    else stress(l->lambda, 2 * l->mu, l->mu, b->count, b->ld, strain, b->stress0, b->stress1);
+    for (size_t c = 4; c < b->components; c++)
+        for (size_t i = 0; i < b->count; i++) b->stress1[c * b->ld + i] = b->stress0[c * b->ld + i] + l->mu * strain[c * b->ld + i];
     if (b->wave_speed)
         for (size_t i = 0; i < b->count; i++) b->wave_speed[i] = sqrt((l->lambda + 2 * l->mu) / b->density[i]);
     return 0;

@@ -67,12 +67,15 @@ static inline __attribute__((always_inline)) strain left_cauchy_green(const doub
 
 static inline int is_turned_over(double J) { return !(J > 0x1p-1000 && J < 0x1p1000); } /* NaN is, too */
 
-/* Returns how many items are turned over; their stress is that of J = 1. */
-static inline __attribute__((always_inline)) long stress(double lambda, double mu, size_t count, size_t ld, int dimension, const double *restrict F,
+typedef struct rows { const double *F, *density; double *stress, *speed; } rows; /* speed may be NULL */
+
+/* Eight items, whose rows are ld apart. Returns how many are turned over; their stress is that of J = 1. Inlined into one function per
+ * dimension and nowhere else, so that an item has the same bits in any batch, however the compiler fuses products and sums. */
+static inline __attribute__((always_inline)) long stress(double lambda, double mu, size_t ld, int dimension, const double *restrict F,
                                                          double *restrict sigma) {
     long bad = 0;
     ROWS_APART
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < 8; i++) {
         const strain b = left_cauchy_green(F, ld, i, dimension);
         const double J = is_turned_over(b.J) ? 1.0 : b.J;
         bad += is_turned_over(b.J);
@@ -87,12 +90,51 @@ static inline __attribute__((always_inline)) long stress(double lambda, double m
     return bad;
 }
 
-/* Says which items have J <= 0. */
-static int complain(const law *l, ab_batch *b, int dimension) {
+/* The P-wave modulus along an axis with b_i is (lambda (1 - ln J) + mu + mu b_i)/J; the largest b_i is at most the largest row sum of |b|. */
+static inline __attribute__((always_inline)) void wave_speed(double lambda, double mu, size_t ld, int dimension, const double *restrict F,
+                                                             const double *restrict density, double *restrict speed) {
+    for (size_t i = 0; i < 8; i++) {
+        const strain s = left_cauchy_green(F, ld, i, dimension);
+        const double x = s.xx + fabs(s.xy) + fabs(s.zx), y = s.yy + fabs(s.xy) + fabs(s.yz), z = s.zz + fabs(s.yz) + fabs(s.zx);
+        const double largest = x > y ? (x > z ? x : z) : (y > z ? y : z), J = is_turned_over(s.J) ? 1.0 : s.J;
+        const double bulk = lambda * (1.0 - natural_log(J));
+        speed[i] = sqrt(((bulk > 0.0 ? bulk : 0.0) + mu + mu * largest) / (J * density[i]));
+    }
+}
+
+static __attribute__((noinline)) long plane(const law *l, size_t ld, const rows *r) {
+    if (r->speed) wave_speed(l->lambda, l->mu, ld, 2, r->F, r->density, r->speed);
+    return stress(l->lambda, l->mu, ld, 2, r->F, r->stress);
+}
+
+static __attribute__((noinline)) long space(const law *l, size_t ld, const rows *r) {
+    if (r->speed) wave_speed(l->lambda, l->mu, ld, 3, r->F, r->density, r->speed);
+    return stress(l->lambda, l->mu, ld, 3, r->F, r->stress);
+}
+
+/* Fewer than eight items from `first` on: the last one again in the lanes that are free. */
+static long few(const law *l, ab_batch *b, size_t first) {
+    double F[9 * 8], sigma[6 * 8], density[8], speed[8];
+    const size_t count = b->count - first, size = b->dimension == 2 ? 5 : 9;
+    for (size_t i = 0; i < 8; i++) {
+        const size_t from = first + (i < count ? i : count - 1);
+        density[i] = b->density[from];
+        for (size_t c = 0; c < size; c++) F[c * 8 + i] = b->deformation_gradient[c * b->ld + from];
+    }
+    const long bad = (b->dimension == 2 ? plane : space)(l, 8, &(rows){F, density, sigma, b->wave_speed ? speed : NULL});
+    for (size_t i = 0; i < count; i++) {
+        for (size_t c = 0; c < b->components; c++) b->stress1[c * b->ld + first + i] = sigma[c * 8 + i];
+        if (b->wave_speed) b->wave_speed[first + i] = speed[i];
+    }
+    return bad;
+}
+
+/* Says which items have J <= 0, or so small that the rounding of another function may have taken it for that. */
+static int complain(const law *l, ab_batch *b) {
     char text[160];
     for (size_t i = 0; i < b->count; i++) {
-        const double J = left_cauchy_green(b->deformation_gradient, b->ld, i, dimension).J;
-        if (!is_turned_over(J)) continue;
+        const double J = left_cauchy_green(b->deformation_gradient, b->ld, i, (int)b->dimension).J;
+        if (J > 1e-12 && !is_turned_over(J)) continue;
         b->flag[i] = 1;
         snprintf(text, sizeof text, "the material is turned inside out: det F = %g; a smaller time step or finer points may help", J);
         l->host->message(l->host->context, text);
@@ -100,26 +142,15 @@ static int complain(const law *l, ab_batch *b, int dimension) {
     return -1;
 }
 
-/* The P-wave modulus along an axis with b_i is (lambda (1 - ln J) + mu + mu b_i)/J; the largest b_i is at most the largest row sum of |b|. */
-static void wave_speed(const law *l, const ab_batch *b, int dimension) {
-    for (size_t i = 0; i < b->count; i++) {
-        const strain s = left_cauchy_green(b->deformation_gradient, b->ld, i, dimension);
-        const double x = s.xx + fabs(s.xy) + fabs(s.zx), y = s.yy + fabs(s.xy) + fabs(s.yz), z = s.zz + fabs(s.yz) + fabs(s.zx);
-        const double J = is_turned_over(s.J) ? 1.0 : s.J;
-        const double bulk = fmax(l->lambda * (1.0 - natural_log(J)), 0.0);
-        b->wave_speed[i] = sqrt((bulk + l->mu + l->mu * fmax(fmax(x, y), z)) / (J * b->density[i]));
-    }
-}
-
 static int update(void *self, ab_batch *b) {
     const law *l = self;
-    const double *F = b->deformation_gradient;
-    const int eight = b->count == 8 && b->ld == 8;
-    long bad;
-    if (b->dimension == 2) bad = eight ? stress(l->lambda, l->mu, 8, 8, 2, F, b->stress1) : stress(l->lambda, l->mu, b->count, b->ld, 2, F, b->stress1);
-    else bad = eight ? stress(l->lambda, l->mu, 8, 8, 3, F, b->stress1) : stress(l->lambda, l->mu, b->count, b->ld, 3, F, b->stress1);
-    if (b->wave_speed) wave_speed(l, b, (int)b->dimension);
-    return bad == 0 ? 0 : complain(l, b, (int)b->dimension);
+    long bad = 0;
+    size_t i = 0;
+    for (; i + 8 <= b->count; i += 8)
+        bad += (b->dimension == 2 ? plane : space)(l, b->ld, &(rows){b->deformation_gradient + i, b->density + i, b->stress1 + i,
+                                                                     b->wave_speed ? b->wave_speed + i : NULL});
+    if (i < b->count) bad += few(l, b, i);
+    return bad == 0 ? 0 : complain(l, b);
 }
 
 static const ab_param params[] = {

@@ -47,12 +47,13 @@ static void destroy(void *self) {
     made->host->release(made->host->context, self);
 }
 
-/* Inlined four times, with constant components, and with count = ld = 8 for blocks of eight points. */
-static inline __attribute__((always_inline)) void return_to_surface(const law l, size_t count, size_t ld, size_t components,
+/* Eight items, whose rows are ld apart. Inlined into one function per number of components and nowhere else, so that an item has the same bits
+ * in any batch, however the compiler fuses products and sums. */
+static inline __attribute__((always_inline)) void return_to_surface(const law l, size_t ld, size_t components,
         const double *restrict strain, const double *restrict stress0, const double *restrict plastic0, double *restrict stress1,
         double *restrict plastic1, double *restrict dissipation) {
     ROWS_APART
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < 8; i++) {
         const double volumetric = l.lambda * (strain[i] + strain[ld + i] + strain[2 * ld + i]);
         const double xx = stress0[i] + (volumetric + l.two_mu * strain[i]);
         const double yy = stress0[ld + i] + (volumetric + l.two_mu * strain[ld + i]);
@@ -81,18 +82,42 @@ static inline __attribute__((always_inline)) void return_to_surface(const law l,
     }
 }
 
-#define RETURN(count, ld, components) \
-    return_to_surface(*l, count, ld, components, b->strain_increment, b->stress0, b->state0, b->stress1, b->state1, b->dissipation)
+typedef struct rows { const double *strain, *stress0, *plastic0; double *stress1, *plastic1, *dissipation; } rows;
+
+static __attribute__((noinline)) void plane(const law *l, size_t ld, const rows *r) {
+    return_to_surface(*l, ld, 4, r->strain, r->stress0, r->plastic0, r->stress1, r->plastic1, r->dissipation);
+}
+
+static __attribute__((noinline)) void space(const law *l, size_t ld, const rows *r) {
+    return_to_surface(*l, ld, 6, r->strain, r->stress0, r->plastic0, r->stress1, r->plastic1, r->dissipation);
+}
+
+/* Fewer than eight items from `first` on: the last one again in the lanes that are free. */
+static void few(const law *l, ab_batch *b, size_t first) {
+    double strain[6 * 8], stress0[6 * 8], stress1[6 * 8], plastic0[8], plastic1[8], dissipation[8];
+    const size_t count = b->count - first;
+    for (size_t i = 0; i < 8; i++) {
+        const size_t from = first + (i < count ? i : count - 1);
+        plastic0[i] = b->state0[from];
+        for (size_t c = 0; c < b->components; c++) strain[c * 8 + i] = b->strain_increment[c * b->ld + from], stress0[c * 8 + i] = b->stress0[c * b->ld + from];
+    }
+    (b->components == 4 ? plane : space)(l, 8, &(rows){strain, stress0, plastic0, stress1, plastic1, dissipation});
+    for (size_t i = 0; i < count; i++) {
+        for (size_t c = 0; c < b->components; c++) b->stress1[c * b->ld + first + i] = stress1[c * 8 + i];
+        b->state1[first + i] = plastic1[i];
+        b->dissipation[first + i] = dissipation[i];
+    }
+}
 
 static int update(void *self, ab_batch *b) {
     const law *l = self;
-    const int eight = b->count == 8 && b->ld == 8;
-    if (b->components == 4 && eight) RETURN(8, 8, 4);
-    else if (b->components == 4) RETURN(b->count, b->ld, 4);
-    else if (eight) RETURN(8, 8, 6);
-    else RETURN(b->count, b->ld, 6);
+    size_t i = 0;
+    for (; i + 8 <= b->count; i += 8)
+        (b->components == 4 ? plane : space)(l, b->ld, &(rows){b->strain_increment + i, b->stress0 + i, b->state0 + i, b->stress1 + i, b->state1 + i,
+                                                               b->dissipation + i});
+    if (i < b->count) few(l, b, i);
     if (b->wave_speed)
-        for (size_t i = 0; i < b->count; i++) b->wave_speed[i] = sqrt((l->lambda + l->two_mu) / b->density[i]);
+        for (i = 0; i < b->count; i++) b->wave_speed[i] = sqrt((l->lambda + l->two_mu) / b->density[i]);
     return 0;
 }
 
