@@ -203,7 +203,8 @@ bool ab_check_class(const ab_class *given, ab_class_copy *copy, ab_refusal *refu
     if (!ab_kind_name(class_->kind)) return ab_refuse(refusal, "(class '%s') is of kind %u, which is none", class_->name, class_->kind);
     const uint32_t spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D;
     if (class_->spaces == 0 || (class_->spaces & ~spaces)) return ab_refuse(refusal, "(class '%s') is for spaces 0x%x, which are none", class_->name, class_->spaces);
-    if (!class_->create || !class_->destroy) return ab_refuse(refusal, "(class '%s') lacks create or destroy", class_->name);
+    if (!class_->create != !class_->destroy || (!class_->create && class_->nparam > 0))
+        return ab_refuse(refusal, "(class '%s') lacks create or destroy", class_->name);
     if (class_->nparam > AB_PARAMS_MAX) return ab_refuse(refusal, "(class '%s') declares %u settings; %d are possible", class_->name, class_->nparam, AB_PARAMS_MAX);
     if (class_->nstate > AB_STATES_MAX) return ab_refuse(refusal, "(class '%s') declares %u states; %d are possible", class_->name, class_->nstate, AB_STATES_MAX);
     if (class_->nparam && !class_->param) return ab_refuse(refusal, "(class '%s') has nparam %u and no settings (param is NULL)", class_->name, class_->nparam);

@@ -244,7 +244,7 @@ typedef struct ab_class {
     const ab_param *param;
     const ab_state *state;
     int (*create)(const ab_host *host, const ab_value *settings, void **self); /* settings in the order of param */
-    void (*destroy)(void *self);
+    void (*destroy)(void *self); /* both NULL in a class without settings that keeps nothing: self is then NULL */
     const void *ops; /* ab_material_ops, ab_boundary_ops or ab_contact_ops */
 } ab_class;
 
