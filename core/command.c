@@ -83,7 +83,7 @@ static int flushed(int status) {
     return status == AB_OK ? AB_FAILED : status;
 }
 
-int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count) {
+int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count, ab_interaction_maker interact) {
     if (argc < 2) {
         ab_command_help(commands, NULL, stderr);
         return AB_BAD_INPUT;
@@ -93,7 +93,7 @@ int ab_command_main(int argc, char **argv, const ab_method *methods, size_t meth
     if (!strcmp(name, "--version")) name = "version";
     const ab_command *command = find_command(name);
     if (!command) return AB_BAD_INPUT;
-    ab_command_line line = {.methods = methods, .method_count = method_count};
+    ab_command_line line = {.methods = methods, .method_count = method_count, .interact = interact};
     int status = ab_command_line_read(command, argc - 1, argv + 1, &line);
     if (status == AB_OK) {
         status = command->run(&line);

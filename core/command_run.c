@@ -41,7 +41,8 @@ static int with_scene(const ab_command_line *line,
                                         .quiet = line->quiet,
                                         .strict = line->strict,
                                         .methods = line->methods,
-                                        .method_count = line->method_count};
+                                        .method_count = line->method_count,
+                                        .interact = line->interact};
         ab_report_print(report, stderr); /* warnings, before a long run rather than after it */
         status = act(line, scene, &options, report);
         ab_report_print(report, stderr);

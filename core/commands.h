@@ -26,6 +26,7 @@ typedef struct ab_command_line {
     int word_count;
     const ab_method *methods; /* main's table: how a body of each method is made */
     size_t method_count;
+    ab_interaction_maker interact; /* main's contact */
 } ab_command_line;
 
 typedef struct ab_command {
@@ -38,7 +39,7 @@ typedef struct ab_command {
 } ab_command;
 
 /* Reads argv with main's table of methods, runs the command, returns the exit status (docs/user.md). Commands end in a NULL name. */
-int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count);
+int ab_command_main(int argc, char **argv, const ab_method *methods, size_t method_count, ab_interaction_maker interact);
 
 /* argv[1..argc-1] are the options and words behind the command. Returns AB_OK, or AB_BAD_INPUT with the reason printed, or -1 where the
  * command's help is asked for. Release with ab_command_line_clear either way. */

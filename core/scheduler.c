@@ -1,0 +1,275 @@
+/* scheduler.c: the time loop. It knows bodies only as domains, contact only as an interaction, and neither by name. */
+#define _GNU_SOURCE
+#include "core/scheduler.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/memory.h"
+#include "core/progress.h"
+
+static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
+
+static void on_signal(int number) { stop_signal = number; }
+
+static double seconds(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+enum { PHASE_BEGIN, PHASE_CONTACT, PHASE_FINISH, PHASE_REMAP, PHASE_STRESS, PHASE_RESULTS, PHASES };
+static const char *const PHASE_NAMES[PHASES] = {"nodes from points", "contact", "points from nodes", "nodes again", "stress and points to nodes", "results"};
+
+/* ---- making and unmaking ------------------------------------------------------------------------------------------------ */
+
+ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *options, ab_schedule **out, ab_report *report)
+{
+    ab_schedule *s = calloc(1, sizeof *s);
+    if (!s) return ab_report_failure(report, "no memory for the schedule");
+    s->scene = scene;
+    s->body_count = scene->body_count;
+    s->domains = calloc(s->body_count + 1, sizeof *s->domains);
+    s->energy = calloc(s->body_count + 1, sizeof *s->energy);
+    s->energy_start = calloc(s->body_count + 1, sizeof *s->energy_start);
+    s->motion = calloc(s->body_count + 1, sizeof *s->motion);
+    s->limit = "";
+    ab_status status = s->domains && s->energy && s->energy_start && s->motion ? AB_OK : ab_report_failure(report, "no memory for %zu bodies", s->body_count);
+    for (size_t b = 0; status == AB_OK && b < s->body_count; ++b) {
+        const ab_body_spec *spec = scene->bodies + b;
+        const ab_method *method = NULL;
+        for (size_t m = 0; m < options->method_count; ++m)
+            if (!strcmp(options->methods[m].name, spec->method)) method = options->methods + m;
+        if (!method) status = ab_report_error(report, spec->mark, "body '%s': method '%s' is not in this version", spec->name, spec->method);
+        else status = method->create(scene, b, options->threads, s->domains + b, report);
+    }
+    if (status == AB_OK && scene->contact_count) status = options->interact(scene, s->domains, &s->interaction, report);
+    if (status != AB_OK) {
+        ab_schedule_destroy(s);
+        return status;
+    }
+    ab_schedule_look(s);
+    memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
+    s->total_start = s->total_now;
+    *out = s;
+    return AB_OK;
+}
+
+void ab_schedule_destroy(ab_schedule *s)
+{
+    if (!s) return;
+    if (s->interaction) s->interaction->destroy(s->interaction);
+    for (size_t b = 0; s->domains && b < s->body_count; ++b)
+        if (s->domains[b]) s->domains[b]->ops->destroy(s->domains[b]);
+    free(s->domains), free(s->energy), free(s->energy_start), free(s->motion), free(s);
+}
+
+/* ---- one step ------------------------------------------------------------------------------------------------------------ */
+
+static double sum_of(const ab_energy *e)
+{
+    return e->kinetic + e->strain + e->potential + e->plastic + e->friction + e->contact + e->boundary + e->damping + e->outflow - e->external;
+}
+
+void ab_schedule_look(ab_schedule *s)
+{
+    ab_energy total = {0};
+    for (size_t b = 0; b < s->body_count; ++b) {
+        ab_energy *e = s->energy + b;
+        s->domains[b]->ops->ledger(s->domains[b], e, s->motion + b);
+        if (s->interaction) s->interaction->book(s->interaction, b, &e->friction, &e->contact);
+        total.kinetic += e->kinetic, total.strain += e->strain, total.potential += e->potential, total.plastic += e->plastic, total.friction += e->friction;
+        total.contact += e->contact, total.boundary += e->boundary, total.damping += e->damping, total.external += e->external, total.outflow += e->outflow;
+    }
+    s->total = total;
+    s->total_now = sum_of(&total);
+}
+
+/* dt of the next step: the scene's own, or by cfl so that the steps left are equal and end on time. *limit: what binds. */
+static double choose_dt(ab_schedule *s)
+{
+    const ab_scene *scene = s->scene;
+    const double left = scene->time_end - s->time;
+    double critical = INFINITY;
+    for (size_t b = 0; b < s->body_count; ++b) {
+        const char *limit = "";
+        const double dt = s->domains[b]->ops->critical_dt(s->domains[b], &limit);
+        if (dt < critical) critical = dt, s->limit = limit;
+    }
+    s->critical_dt = critical;
+    if (scene->time_dt > 0.0) {
+        const double whole = scene->time_dt;
+        return left < whole * (1.0 + 1e-9) ? left : whole;
+    }
+    const double wanted = scene->time_cfl * critical;
+    const double steps = ceil(left / wanted - 1e-9);
+    return left / fmax(steps, 1.0);
+}
+
+/* Times every call of a phase. */
+#define TIMED(phase, statement)                                  \
+    do {                                                         \
+        const double begin_ = seconds(CLOCK_MONOTONIC);          \
+        statement;                                               \
+        s->phase_seconds[phase] += seconds(CLOCK_MONOTONIC) - begin_; \
+    } while (0)
+
+static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_report *report)
+{
+    typedef ab_status (*act)(ab_domain *, const ab_step *, ab_report *);
+    for (size_t b = 0; b < s->body_count; ++b) {
+        const act call = *(const act *)((const char *)s->domains[b]->ops + offset);
+        if (call) AB_TRY(call(s->domains[b], step, report));
+    }
+    return AB_OK;
+}
+#define EACH(what) each(s, &step, offsetof(ab_domain_ops, what), report)
+
+ab_status ab_schedule_step(ab_schedule *s, ab_report *report)
+{
+    const ab_scene *scene = s->scene;
+    const double dt = choose_dt(s);
+    ab_step step = {.time = s->time, .dt = dt, .number = s->number};
+    for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);
+    step.damping = s->time < scene->damping_until ? scene->damping_local : 0.0;
+    bool any_early = false, any_remap = false;
+    for (size_t b = 0; b < s->body_count; ++b) {
+        any_early = any_early || s->domains[b]->ops->early;
+        any_remap = any_remap || s->domains[b]->ops->remap;
+    }
+    ab_interaction *in = s->interaction;
+    ab_status status = AB_OK;
+    TIMED(PHASE_BEGIN, status = EACH(begin));
+    AB_TRY(status);
+    if (any_early) {
+        if (in) TIMED(PHASE_CONTACT, status = in->solve(in, &step, AB_STAGE_KINEMATIC, report));
+        AB_TRY(status);
+        TIMED(PHASE_STRESS, status = EACH(early));
+        AB_TRY(status);
+    }
+    TIMED(PHASE_BEGIN, status = EACH(trial));
+    AB_TRY(status);
+    if (in) TIMED(PHASE_CONTACT, status = in->solve(in, &step, AB_STAGE_DYNAMIC, report));
+    AB_TRY(status);
+    TIMED(PHASE_FINISH, status = EACH(finish));
+    AB_TRY(status);
+    if (any_remap) {
+        TIMED(PHASE_REMAP, status = EACH(remap));
+        AB_TRY(status);
+        if (in) TIMED(PHASE_CONTACT, status = in->solve(in, &step, AB_STAGE_KINEMATIC, report));
+        AB_TRY(status);
+    }
+    TIMED(PHASE_STRESS, status = EACH(stress));
+    AB_TRY(status);
+    s->dt = dt;
+    s->number += 1;
+    s->time = scene->time_dt > 0.0 && fabs(dt - scene->time_dt) < 1e-9 * dt ? (double)s->number * scene->time_dt : s->time + dt;
+    if (scene->time_end - s->time < 1e-9 * dt) s->time = scene->time_end;
+    ab_schedule_look(s);
+    return AB_OK;
+}
+
+void ab_schedule_view(const ab_schedule *s, ab_state_view *view)
+{
+    *view = (ab_state_view){.scene = s->scene, .time = s->time, .dt = s->dt, .step = s->number, .limit = s->limit, .domains = s->domains, .energy = s->energy, .motion = s->motion,
+                            .energy_start = s->energy_start, .total = s->total, .remainder = s->total_now - s->total_start};
+    view->contacts = s->interaction ? s->interaction->totals(s->interaction) : NULL;
+}
+
+/* ---- a run --------------------------------------------------------------------------------------------------------------- */
+
+static void warn_of_dt(const ab_schedule *s, ab_report *report)
+{
+    if (s->scene->time_dt > s->critical_dt)
+        ab_report_warning(report, s->scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", s->scene->time_dt, s->critical_dt, s->limit);
+}
+
+/* Steps until the end, a failure or a signal. */
+static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progress, ab_report *report)
+{
+    while (s->time < s->scene->time_end && !stop_signal) {
+        AB_TRY(ab_schedule_step(s, report));
+        ab_state_view view;
+        ab_schedule_view(s, &view);
+        ab_status status = AB_OK;
+        TIMED(PHASE_RESULTS, status = ab_results_step(results, &view, report));
+        AB_TRY(status);
+        s->steps_points += s->points;
+        ab_progress_step(progress, &view);
+    }
+    return AB_OK;
+}
+
+ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report *report)
+{
+    ab_schedule *s = NULL;
+    AB_TRY(ab_schedule_create(scene, options, &s, report));
+    s->dt = choose_dt(s);
+    warn_of_dt(s, report);
+    ab_report_print(report, stderr);
+    ab_state_view view;
+    ab_schedule_view(s, &view);
+    ab_results *results = NULL;
+    ab_status status = ab_results_open(options->folder, scene, &view, &results, report);
+    if (status == AB_OK) status = ab_results_step(results, &view, report);
+    if (status != AB_OK) {
+        ab_results_destroy(results);
+        ab_schedule_destroy(s);
+        return status;
+    }
+    for (size_t b = 0; b < s->body_count; ++b) s->points += s->domains[b]->ops->count(s->domains[b]);
+    const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    struct sigaction old_int, old_term, old_size;
+    stop_signal = 0;
+    sigaction(SIGINT, &action, &old_int);
+    sigaction(SIGTERM, &action, &old_term);
+    sigaction(SIGXFSZ, &ignore, &old_size);
+    ab_progress progress;
+    ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points);
+    const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    status = advance(s, results, &progress, report);
+    ab_progress_end(&progress);
+    ab_run_facts facts = {.wall_seconds = seconds(CLOCK_MONOTONIC) - wall, .cpu_seconds = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu, .steps = s->number, .threads = options->threads,
+                          .points = s->points, .version = ABUT_VERSION, .outcome = "done", .plan_json = options->plan_json};
+    char outcome[256];
+    if (status != AB_OK) {
+        snprintf(outcome, sizeof outcome, "failed: %s", ab_report_text(report, ab_report_errors(report) ? 0 : 1));
+        facts.outcome = outcome;
+    } else if (stop_signal) {
+        snprintf(outcome, sizeof outcome, "stopped by signal %d", (int)stop_signal);
+        facts.outcome = outcome;
+        status = (ab_status)(128 + stop_signal);
+    }
+    const double stepping = facts.wall_seconds - s->phase_seconds[PHASE_RESULTS];
+    facts.point_steps_per_second = stepping > 0.0 ? (double)s->steps_points / stepping : 0.0;
+    facts.peak_bytes = ab_memory_peak();
+    for (int p = 0; p < PHASES; ++p) {
+        facts.phase_names[p] = PHASE_NAMES[p];
+        facts.phase_seconds[p] = s->phase_seconds[p];
+    }
+    size_t bytes = 0;
+    for (size_t b = 0; b < s->body_count; ++b) {
+        ab_plan_body plan;
+        s->domains[b]->ops->plan(s->domains[b], &plan);
+        bytes += plan.bytes;
+    }
+    facts.bytes_per_point = s->points ? bytes / s->points : 0;
+    ab_schedule_view(s, &view);
+    size_t missed = 0;
+    ab_status closed = AB_OK;
+    if (status != AB_OK) closed = ab_results_frame(results, &view, report); /* what was computed is not lost */
+    if (!options->quiet) ab_results_table(results, &view, &facts, stdout);
+    const ab_status written = ab_results_close(results, &view, &facts, &missed, report);
+    if (status == AB_OK) status = closed != AB_OK ? closed : written;
+    if (status == AB_OK && missed && options->strict) status = AB_MISSED;
+    ab_results_destroy(results);
+    ab_schedule_destroy(s);
+    sigaction(SIGINT, &old_int, NULL);
+    sigaction(SIGTERM, &old_term, NULL);
+    sigaction(SIGXFSZ, &old_size, NULL);
+    return status;
+}

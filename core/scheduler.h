@@ -1,0 +1,49 @@
+/* scheduler.h: from a scene to a run: domains, contact, the time loop, results. */
+#ifndef AB_SCHEDULER_H
+#define AB_SCHEDULER_H
+
+#include "core/interaction.h"
+
+typedef struct ab_method { /* a way to compute a body; main lists them */
+    const char *name;      /* what a scene writes behind `method:` */
+    ab_status (*create)(const ab_scene *, size_t body, int threads, ab_domain **, ab_report *);
+} ab_method;
+
+typedef struct ab_run_options {
+    const char *folder; /* for the results */
+    int threads;
+    bool quiet, strict;
+    const ab_method *methods;
+    size_t method_count;
+    ab_interaction_maker interact; /* for scenes with contacts */
+    const char *plan_json;         /* to be kept in the summary; may be NULL */
+} ab_run_options;
+
+typedef struct ab_schedule { /* a scene on its way through time */
+    const ab_scene *scene;
+    ab_domain **domains;
+    size_t body_count;
+    ab_interaction *interaction; /* NULL without contacts */
+    double time, dt, critical_dt;
+    long number;
+    const char *limit; /* what binds dt */
+    ab_energy *energy, *energy_start, total;
+    ab_motion *motion;
+    double total_now, total_start; /* J: all terms of the ledger */
+    size_t points, steps_points;
+    double phase_seconds[8];
+} ab_schedule;
+
+ab_status ab_schedule_create(const ab_scene *, const ab_run_options *, ab_schedule **, ab_report *);
+void ab_schedule_destroy(ab_schedule *);
+ab_status ab_schedule_step(ab_schedule *, ab_report *);
+void ab_schedule_look(ab_schedule *); /* reads the ledgers */
+void ab_schedule_view(const ab_schedule *, ab_state_view *);
+
+/* Runs to the end: AB_OK, AB_FAILED, AB_BAD_INPUT, AB_MISSED (with strict), or 128 + signal. */
+ab_status ab_run(const ab_scene *, const ab_run_options *, ab_report *);
+
+/* What the scene needs and what it will not pay for, as text or JSON. Runs a few steps to estimate the time. */
+ab_status ab_plan_print(const ab_scene *, const ab_run_options *, bool json, FILE *, ab_report *);
+
+#endif
