@@ -1,170 +1,286 @@
-/* plan.c: what a scene needs, said before it runs, and what it will not pay for. */
+/* plan.c: writes the plan as JSON and as text. Both go over the same four lists: bodies, contacts, plugins, and what is left out. */
+#define _GNU_SOURCE
+#include "core/plan.h"
+
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "core/scheduler.h"
+/* ---- the lists ------------------------------------------------------------------------------------------------------------------- */
 
-enum { TRIAL_STEPS = 5 };
+/* Receives one item of a list: a name and what there is to say of it. */
+typedef void (*item)(ab_text *text, size_t number, const char *name, const char *what, const ab_loaded_class *loaded);
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+static const char *kind_name(uint32_t kind) { return kind == AB_MATERIAL ? "material" : kind == AB_BOUNDARY ? "boundary" : "contact"; }
 
-typedef struct plan_facts {
-    const ab_scene *scene;
-    ab_plan_body *bodies;
-    size_t points, bytes;
-    double dt, critical, steps, seconds;
-    const char *limit;
-} plan_facts;
-
-static void text(FILE *s, const char *t)
-{
-    fputc('"', s);
-    for (; *t; ++t) {
-        if (*t == '"' || *t == '\\') fprintf(s, "\\%c", *t);
-        else if ((unsigned char)*t < 0x20) fprintf(s, "\\u%04x", (unsigned char)*t);
-        else fputc(*t, s);
+/* Each plugin class in use once, with the first reason for it. */
+static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
+    size_t number = 0;
+    char why[256];
+    for (size_t m = 0; m < scene->material_count; m++) {
+        const ab_material_spec *material = &scene->materials[m];
+        bool known = false;
+        for (size_t k = 0; k < m; k++) known = known || scene->materials[k].loaded == material->loaded;
+        if (known) continue;
+        const char *body = NULL;
+        for (size_t b = 0; !body && b < scene->body_count; b++)
+            if (scene->materials[scene->bodies[b].material].loaded == material->loaded) body = scene->bodies[b].name;
+        snprintf(why, sizeof why, body ? "material of body '%s'" : "material '%s', which no body has", body ? body : material->name);
+        tell(text, number++, material->loaded->class_.name, why, material->loaded);
     }
-    fputc('"', s);
-}
-
-/* "a, b, c" as a list of texts. */
-static void list(FILE *s, const char *words)
-{
-    fputc('[', s);
-    while (*words) {
-        const char *end = strstr(words, ", ");
-        const size_t n = end ? (size_t)(end - words) : strlen(words);
-        fprintf(s, "\"%.*s\"%s", (int)n, words, end ? ", " : "");
-        words += n + (end ? 2 : 0);
+    for (size_t c = 0; c < 2 * scene->contact_count; c++) {
+        const ab_contact_spec *contact = &scene->contacts[c / 2];
+        const ab_loaded_class *loaded = c % 2 ? contact->responder : contact->finder;
+        bool known = !loaded;
+        for (size_t k = 0; k < c; k++) known = known || loaded == (k % 2 ? scene->contacts[k / 2].responder : scene->contacts[k / 2].finder);
+        if (known) continue;
+        snprintf(why, sizeof why, "%s of '%s' and '%s'", c % 2 ? "response to contact" : "finds the contact", scene->bodies[contact->body[0]].name,
+                 scene->bodies[contact->body[1]].name);
+        tell(text, number++, loaded->class_.name, why, loaded);
     }
-    fputc(']', s);
 }
 
-static bool material_keeps_state(const ab_scene *scene)
-{
-    for (size_t b = 0; b < scene->body_count; ++b)
-        if (scene->materials[scene->bodies[b].material].loaded->class_.nstate) return true;
-    return false;
-}
-
-/* What this scene does not pay for; one line each. Returns how many. */
-static size_t unpaid(const ab_scene *scene, const char *lines[8])
-{
-    size_t n = 0;
-    if (!scene->contact_count) lines[n++] = "no contact: no search, no contact plugin loaded, no sizes of points kept for gaps";
-    lines[n++] = "no boundary plugin: no boundary pass";
-    if (!material_keeps_state(scene)) lines[n++] = "no material keeps state: no state arrays";
-    if (!scene->load_count) lines[n++] = "no tractions: no pass over loaded points";
-    if (!(scene->damping_local > 0.0)) lines[n++] = "no damping: no damping forces kept";
-    lines[n++] = "plane strain: no third component of velocity, two shear stresses fewer";
-    lines[n++] = "empty grid: tiles stand only where material is";
-    if (!scene->output_field_count) lines[n++] = "no output fields asked for: frames hold positions only";
-    return n;
-}
-
-static void print_json(const plan_facts *f, FILE *s)
-{
-    const ab_scene *scene = f->scene;
-    fprintf(s, "{\n  \"scene\": "), text(s, scene->path);
-    fprintf(s, ",\n  \"bodies\": [");
-    for (size_t b = 0; b < scene->body_count; ++b) {
-        const ab_plan_body *p = f->bodies + b;
-        fprintf(s, "%s\n    {\"name\": ", b ? "," : ""), text(s, scene->bodies[b].name);
-        fprintf(s, ", \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"bytes_per_point\": %zu, \"fields\": ", p->points, p->cells, p->tiles, p->bytes, p->bytes_per_point);
-        list(s, p->fields);
-        fprintf(s, ", \"passes\": "), list(s, p->passes), fprintf(s, "}");
-    }
-    fprintf(s, "\n  ],\n  \"contact_passes\": %zu,\n  \"boundary_passes\": 0,\n  \"plugins\": [", scene->contact_count);
-    const char *comma = "";
-    for (size_t m = 0; m < scene->material_count; ++m, comma = ",") {
-        fprintf(s, "%s\n    {\"kind\": \"material\", \"name\": ", comma), text(s, scene->materials[m].loaded->class_.name);
-        fprintf(s, ", \"for\": "), text(s, scene->materials[m].name), fprintf(s, ", \"file\": "), text(s, scene->materials[m].loaded->path), fprintf(s, "}");
-    }
-    for (size_t c = 0; c < scene->contact_count; ++c) {
-        const ab_loaded_class *both[2] = {scene->contacts[c].finder, scene->contacts[c].responder};
-        for (int k = 0; k < 2; ++k, comma = ",") {
-            fprintf(s, "%s\n    {\"kind\": \"contact\", \"name\": ", comma), text(s, both[k]->class_.name);
-            fprintf(s, ", \"for\": \"contact[%zu] %s\", \"file\": ", c, k ? "response" : "algorithm"), text(s, both[k]->path), fprintf(s, "}");
+/* What a scene might cost and this one does not. */
+static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text) {
+    const ab_scene *scene = schedule->scene;
+    size_t number = 0;
+    char what[256];
+    if (!scene->contact_count)
+        tell(text, number++, "contact", scene->body_count < 2 ? "there is one body: no contact pass, no contact plugin" : "no contact is asked for: no contact pass, no contact plugin",
+             NULL);
+    tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
+    if (scene->space == AB_SPACE_PLANE_STRAIN)
+        tell(text, number++, "third dimension", "plane strain: no third component of velocity and force, no yz and zx of stress", NULL);
+    for (size_t b = 0; b < scene->body_count; b++) {
+        const ab_loaded_class *loaded = scene->materials[scene->bodies[b].material].loaded;
+        if (loaded->class_.nstate == 0) {
+            snprintf(what, sizeof what, "%s of '%s' keeps none: no state arrays", loaded->class_.name, scene->bodies[b].name);
+            tell(text, number++, "state", what, NULL);
+        }
+        if (!(loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT)) {
+            snprintf(what, sizeof what, "%s of '%s' does not need it", loaded->class_.name, scene->bodies[b].name);
+            tell(text, number++, "deformation gradient", what, NULL);
         }
     }
-    fprintf(s, "\n  ],\n  \"points\": %zu,\n  \"bytes\": %zu,\n  \"dt\": %.17g,\n  \"critical_dt\": %.17g,\n  \"limit\": ", f->points, f->bytes, f->dt, f->critical), text(s, f->limit);
-    fprintf(s, ",\n  \"steps\": %.0f,\n  \"estimated_seconds\": %.6g,\n  \"not_paid_for\": [", f->steps, f->seconds);
-    const char *lines[8];
-    const size_t n = unpaid(scene, lines);
-    for (size_t k = 0; k < n; ++k) fprintf(s, "%s\n    ", k ? "," : ""), text(s, lines[k]);
-    fprintf(s, "\n  ]\n}\n");
+    double cells = 0.0;
+    for (size_t b = 0; b < schedule->body_count; b++) {
+        ab_plan_body body;
+        schedule->domains[b]->ops->plan(schedule->domains[b], &body);
+        cells += (double)body.cells;
+    }
+    const double all = (double)scene->grid_cells[0] * scene->grid_cells[1];
+    if (all > cells) {
+        snprintf(what, sizeof what, "%.0f of %.0f cells of the grid hold no material: no memory, no time", all - cells, all);
+        tell(text, number++, "empty grid", what, NULL);
+    }
+    if (scene->damping_local == 0.0) tell(text, number++, "damping", "none is asked for", NULL);
+    if (!scene->load_count) tell(text, number++, "loads", "no traction is asked for: no surface pass", NULL);
+    if (!scene->output_field_count) tell(text, number++, "output", "no field is asked for: nothing but places is written", NULL);
 }
 
-static void print_text(const plan_facts *f, FILE *s)
-{
-    const ab_scene *scene = f->scene;
-    fprintf(s, "%s\n", scene->title && scene->title[0] ? scene->title : scene->path);
-    for (size_t b = 0; b < scene->body_count; ++b) {
-        const ab_plan_body *p = f->bodies + b;
-        const ab_material_spec *m = scene->materials + scene->bodies[b].material;
-        fprintf(s, "\nbody '%s': %s, %zu points in %zu cells (%zu tiles of %d x %d nodes), %.3g MB, %zu bytes a point\n", scene->bodies[b].name, scene->bodies[b].method, p->points, p->cells,
-                p->tiles, AB_TILE, AB_TILE, 1e-6 * (double)p->bytes, p->bytes_per_point);
-        fprintf(s, "  fields: %s\n  passes: %s\n", p->fields, p->passes);
-        fprintf(s, "  plugin: material '%s' (%s), because body '%s' is made of '%s'\n          %s\n", m->loaded->class_.name, m->loaded->plugin_version, scene->bodies[b].name, m->name,
-                m->loaded->path);
-    }
-    for (size_t c = 0; c < scene->contact_count; ++c) {
-        const ab_contact_spec *k = scene->contacts + c;
-        fprintf(s, "\ncontact[%zu]: '%s' and '%s', only while tiles of both overlap\n", c, scene->bodies[k->body[0]].name, scene->bodies[k->body[1]].name);
-        fprintf(s, "  plugin: contact '%s' (%s) finds points\n          %s\n", k->finder->class_.name, k->finder->plugin_version, k->finder->path);
-        fprintf(s, "  plugin: contact '%s' (%s) answers them\n          %s\n", k->responder->class_.name, k->responder->plugin_version, k->responder->path);
-    }
-    fprintf(s, "\n%zu points, %.3g MB\n", f->points, 1e-6 * (double)f->bytes);
-    fprintf(s, "dt %.6g s (%.3g of the critical %.6g s: %s)\n", f->dt, f->dt / f->critical, f->critical, f->limit);
-    fprintf(s, "%.0f steps to t = %.6g s; about %.3g s of computing, from %d steps just made\n\nnot paid for:\n", f->steps, scene->time_end, f->seconds, TRIAL_STEPS);
-    const char *lines[8];
-    const size_t n = unpaid(scene, lines);
-    for (size_t k = 0; k < n; ++k) fprintf(s, "  %s\n", lines[k]);
+static double steps_of(const ab_schedule *schedule) {
+    const double left = schedule->scene->time_end - schedule->time;
+    return (double)schedule->number + (schedule->dt > 0.0 ? ceil(left / schedule->dt - 1e-9) : 0.0);
 }
 
-ab_status ab_plan_print(const ab_scene *scene, const ab_run_options *options, bool json, FILE *stream, ab_report *report)
-{
+static ab_plan_body totals_of(const ab_schedule *schedule) {
+    ab_plan_body sum = {0};
+    for (size_t b = 0; b < schedule->body_count; b++) {
+        ab_plan_body body;
+        schedule->domains[b]->ops->plan(schedule->domains[b], &body);
+        sum.points += body.points;
+        sum.cells += body.cells;
+        sum.tiles += body.tiles;
+        sum.bytes += body.bytes;
+    }
+    return sum;
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------------------------------------------ */
+
+static void add_string(ab_text *text, const char *before, const char *string) {
+    ab_text_add(text, "%s", before);
+    ab_text_add_escaped(text, string);
+}
+
+static void add_number(ab_text *text, const char *before, double value) {
+    ab_text_add(text, "%s", before);
+    ab_text_add_number(text, value);
+}
+
+/* "a, b, c" as a list of strings. */
+static void add_words(ab_text *text, const char *before, const char *words) {
+    ab_text_add(text, "%s[", before);
+    for (const char *word = words; *word;) {
+        const char *comma = strstr(word, ", ");
+        const int length = comma ? (int)(comma - word) : (int)strlen(word);
+        char one[512];
+        snprintf(one, sizeof one, "%.*s", length, word);
+        add_string(text, word == words ? "" : ", ", one);
+        word += comma ? length + 2 : length;
+    }
+    ab_text_add(text, "]");
+}
+
+static void json_plugin(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
+    add_string(text, number ? ",\n    {\"name\": " : "\n    {\"name\": ", name);
+    add_string(text, ", \"kind\": ", kind_name(loaded->class_.kind));
+    add_string(text, ", \"why\": ", why);
+    add_string(text, ", \"file\": ", loaded->path ? loaded->path : "");
+    add_string(text, ", \"version\": ", loaded->plugin_version ? loaded->plugin_version : "");
+    ab_text_add(text, "}");
+}
+
+static void json_left_out(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
+    (void)loaded;
+    add_string(text, number ? ",\n    {\"name\": " : "\n    {\"name\": ", name);
+    add_string(text, ", \"why\": ", why);
+    ab_text_add(text, "}");
+}
+
+void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_options *options, double seconds_per_step) {
+    const ab_scene *scene = schedule->scene;
+    const ab_plan_body sum = totals_of(schedule);
+    ab_text_add(text, "{\n  \"bodies\": [");
+    for (size_t b = 0; b < schedule->body_count; b++) {
+        const ab_domain *domain = schedule->domains[b];
+        ab_plan_body body;
+        domain->ops->plan(schedule->domains[b], &body);
+        add_string(text, b ? ",\n    {\"name\": " : "\n    {\"name\": ", scene->bodies[b].name);
+        add_string(text, ", \"method\": ", domain->ops->method);
+        ab_text_add(text, ", \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"bytes_per_point\": %zu", body.points, body.cells, body.tiles,
+                    body.bytes, body.bytes_per_point);
+        add_words(text, ", \"fields\": ", body.fields);
+        add_words(text, ", \"passes\": ", body.passes);
+        ab_text_add(text, "}");
+    }
+    ab_text_add(text, "],\n  \"contacts\": [");
+    for (size_t c = 0; c < scene->contact_count; c++) {
+        const ab_contact_spec *contact = &scene->contacts[c];
+        add_string(text, c ? ",\n    {\"bodies\": [" : "\n    {\"bodies\": [", scene->bodies[contact->body[0]].name);
+        add_string(text, ", ", scene->bodies[contact->body[1]].name);
+        add_string(text, "], \"algorithm\": ", contact->finder->class_.name);
+        add_string(text, ", \"response\": ", contact->responder ? contact->responder->class_.name : contact->finder->class_.name);
+        ab_text_add(text, ", \"passes\": [\"find\", \"respond\"]}");
+    }
+    ab_text_add(text, "],\n  \"plugins\": [");
+    each_plugin(scene, json_plugin, text);
+    ab_text_add(text, "],\n  \"not_paid_for\": [");
+    each_left_out(schedule, json_left_out, text);
+    ab_text_add(text, "],\n  \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"threads\": %d", sum.points, sum.cells, sum.tiles, sum.bytes,
+                options->threads);
+    add_number(text, ",\n  \"dt\": ", schedule->dt);
+    add_number(text, ", \"dt_critical\": ", schedule->critical_dt);
+    add_string(text, ", \"dt_limit\": ", schedule->limit);
+    add_number(text, ",\n  \"steps\": ", steps_of(schedule));
+    add_number(text, ", \"seconds\": ", seconds_per_step > 0.0 ? seconds_per_step * steps_of(schedule) : NAN);
+    ab_text_add(text, "\n}");
+}
+
+/* ---- text ------------------------------------------------------------------------------------------------------------------------ */
+
+static void text_plugin(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
+    (void)number;
+    ab_text_add(text, "  %-9s %-18s %s\n", kind_name(loaded->class_.kind), name, why);
+}
+
+static void text_left_out(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
+    (void)number;
+    (void)loaded;
+    ab_text_add(text, "  %-21s %s\n", name, why);
+}
+
+static void add_bytes(ab_text *text, size_t bytes) {
+    const double kib = (double)bytes / 1024.0;
+    if (kib < 1024.0)
+        ab_text_add(text, "%.0f KiB", kib);
+    else if (kib < 1024.0 * 1024.0)
+        ab_text_add(text, "%.1f MiB", kib / 1024.0);
+    else
+        ab_text_add(text, "%.1f GiB", kib / (1024.0 * 1024.0));
+}
+
+static void add_seconds(ab_text *text, double seconds) {
+    if (seconds < 120.0)
+        ab_text_add(text, "%.2g s", seconds);
+    else if (seconds < 7200.0)
+        ab_text_add(text, "%.0f min", seconds / 60.0);
+    else
+        ab_text_add(text, "%.1f h", seconds / 3600.0);
+}
+
+void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_options *options, double seconds_per_step) {
+    const ab_scene *scene = schedule->scene;
+    const ab_plan_body sum = totals_of(schedule);
+    if (scene->title && scene->title[0]) ab_text_add(text, "%s\n\n", scene->title);
+    ab_text_add(text, "Bodies\n");
+    for (size_t b = 0; b < schedule->body_count; b++) {
+        const ab_domain *domain = schedule->domains[b];
+        ab_plan_body body;
+        domain->ops->plan(schedule->domains[b], &body);
+        ab_text_add(text, "  %s: %s, %zu points in %zu cells (%zu tiles), %zu bytes a point, ", scene->bodies[b].name, domain->ops->method, body.points, body.cells,
+                    body.tiles, body.bytes_per_point);
+        add_bytes(text, body.bytes);
+        ab_text_add(text, " in all\n    fields: %s\n    each step: %s\n", body.fields, body.passes);
+    }
+    if (scene->contact_count) ab_text_add(text, "\nContacts\n");
+    for (size_t c = 0; c < scene->contact_count; c++) {
+        const ab_contact_spec *contact = &scene->contacts[c];
+        ab_text_add(text, "  %s and %s: each step: find (%s), respond (%s), where their tiles meet\n", scene->bodies[contact->body[0]].name,
+                    scene->bodies[contact->body[1]].name, contact->finder->class_.name,
+                    contact->responder ? contact->responder->class_.name : contact->finder->class_.name);
+    }
+    ab_text_add(text, "\nPlugins\n");
+    each_plugin(scene, text_plugin, text);
+    ab_text_add(text, "\nNot paid for\n");
+    each_left_out(schedule, text_left_out, text);
+    ab_text_add(text, "\nCost\n  %zu points, ", sum.points);
+    add_bytes(text, sum.bytes);
+    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n  %.0f steps", options->threads, options->threads == 1 ? "" : "s", schedule->dt,
+                schedule->critical_dt, schedule->limit, steps_of(schedule));
+    if (seconds_per_step > 0.0) {
+        ab_text_add(text, ", about ");
+        add_seconds(text, seconds_per_step * steps_of(schedule));
+    }
+    ab_text_add(text, "\n");
+}
+
+/* ---- abut plan --------------------------------------------------------------------------------------------------------------------- */
+
+static double now(void) {
+    struct timespec clock;
+    clock_gettime(CLOCK_MONOTONIC, &clock);
+    return (double)clock.tv_sec + 1e-9 * (double)clock.tv_nsec;
+}
+
+/* Steps a little: one step warms up, then as many as fit in a fifth of a second, at most 200. A step that fails only ends the estimate: the run
+ * will say what is wrong. */
+static double measure(ab_schedule *schedule, ab_report *report) {
+    const double end = schedule->scene->time_end;
+    double begin = 0.0, spent = 0.0;
+    int steps = -1;
+    while (schedule->time < end && steps < 200 && spent < 0.2) {
+        if (ab_schedule_step(schedule, report) != AB_OK) return 0.0;
+        if (++steps == 0) begin = now();
+        spent = now() - begin;
+    }
+    return steps > 0 ? spent / steps : 0.0;
+}
+
+ab_status ab_plan_print(const ab_scene *scene, const ab_run_options *options, bool json, FILE *stream, ab_report *report) {
     ab_schedule *schedule = NULL;
     AB_TRY(ab_schedule_create(scene, options, &schedule, report));
-    plan_facts f = {.scene = scene, .bodies = calloc(scene->body_count + 1, sizeof *f.bodies)};
-    if (!f.bodies) {
-        ab_schedule_destroy(schedule);
-        return ab_report_failure(report, "no memory for the plan");
-    }
-    for (size_t b = 0; b < scene->body_count; ++b) {
-        schedule->domains[b]->ops->plan(schedule->domains[b], f.bodies + b);
-        f.points += f.bodies[b].points;
-        f.bytes += f.bodies[b].bytes;
-    }
-    ab_status status = AB_OK;
-    double begin = now(), first = 0.0;
-    int made = 0;
-    for (; status == AB_OK && made < TRIAL_STEPS && schedule->time < scene->time_end; ++made) {
-        status = ab_schedule_step(schedule, report);
-        if (made == 0) { /* the first step sets out from nothing: not typical */
-            first = now() - begin;
-            f.dt = schedule->dt;
-            f.critical = schedule->critical_dt;
-            f.limit = schedule->limit;
-            begin = now();
-        }
-    }
-    const double per_step = made > 1 ? (now() - begin) / (made - 1) : first;
-    f.steps = f.dt > 0.0 ? ceil(scene->time_end / f.dt - 1e-9) : 0.0;
-    f.seconds = per_step * f.steps;
-    if (!f.limit) f.limit = "";
-    if (status == AB_OK) {
-        if (json) print_json(&f, stream);
-        else print_text(&f, stream);
-    }
-    free(f.bodies);
+    ab_report *first_steps = ab_report_create(); /* their mistakes belong to the run */
+    const double seconds_per_step = first_steps ? measure(schedule, first_steps) : 0.0;
+    ab_report_destroy(first_steps);
+    ab_text text = {0};
+    (json ? ab_plan_add_json : ab_plan_add_text)(&text, schedule, options, seconds_per_step);
     ab_schedule_destroy(schedule);
+    ab_status status = AB_OK;
+    if (text.failed)
+        status = ab_report_failure(report, "no memory for the plan");
+    else
+        fprintf(stream, json ? "%s\n" : "%s", text.bytes);
+    ab_text_clear(&text);
     return status;
 }
