@@ -17,7 +17,10 @@ static void take_constant(ab_scene_reader *r, const ab_entry *entry) {
     if (text != NULL) {
         const ab_status status = ab_quantity_read(r->base.formulas, r->base.units, text, NULL, AB_NO_VARIABLE, &number, why, sizeof why);
         if (status == AB_FAILED) r->base.out_of_memory = true;
-        if (status != AB_OK) ab_report_error(r->base.report, entry->value->mark, "%s: %s", path, why);
+        if (status != AB_OK) {
+            ab_report_error(r->base.report, entry->value->mark, "%s: %s", path, why);
+            number.value = 1;
+        }
     }
     /* known by name even when its value is wrong, so that one mistake is not said again wherever it is used */
     if (ab_formulas_define(r->base.formulas, entry->key, number.value) != AB_OK)

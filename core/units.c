@@ -26,6 +26,11 @@ static bool open_system(ab_units *units) {
         units->tried = true;
         ut_set_error_message_handler(ut_ignore);
         units->system = ut_read_xml(NULL);
+        ut_unit *degree = units->system == NULL ? NULL : ut_parse(units->system, "degree", UT_ASCII);
+        if (degree != NULL) { /* the usual short form is not in the database */
+            ut_map_name_to_unit("deg", UT_ASCII, degree);
+            ut_free(degree);
+        }
     }
     return units->system != NULL;
 }
