@@ -11,6 +11,7 @@ cd "$scratch/own"
 PKG_CONFIG_PATH=$(dirname "$(find "$scratch/installed" -name abut.pc)")
 export PKG_CONFIG_PATH CMAKE_PREFIX_PATH=$scratch/installed PATH=$scratch/installed/bin:$PATH
 unset ABUT_PLUGIN_PATH
+export OMP_NUM_THREADS=1
 
 # "<!-- file: NAME -->" stands before a fenced block that is that file, "<!-- run -->" before commands.
 awk '
