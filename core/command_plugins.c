@@ -6,14 +6,23 @@
 #include "core/plugin_check.h"
 #include "core/plugin_host.h"
 
-typedef struct word { uint32_t bit; const char *text; } word;
+typedef struct word {
+    uint32_t bit;
+    const char *text;
+} word;
 
 static const word spaces[] = {{AB_PLANE_STRAIN, "plane strain"}, {AB_AXISYMMETRIC, "axisymmetric"}, {AB_SPACE_3D, "3-D"}};
-static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradient"}, {AB_NEED_VELOCITY_GRADIENT, "velocity gradient"},
-                             {AB_NEED_SHARED_NODES, "shared nodes"}, {AB_NEED_MASS_GRADIENT, "mass gradient"},
-                             {AB_NEED_AREA_VECTOR, "area vector"}, {AB_NEED_NEAR_POINTS, "points near the node"}};
-static const word gives[] = {{AB_GIVE_STRESS, "stress"}, {AB_GIVE_DISSIPATION, "dissipation"}, {AB_GIVE_WAVE_SPEED, "wave speed"},
-                             {AB_GIVE_POINTS, "contact points (algorithm)"}, {AB_GIVE_IMPULSE, "impulses (response)"}};
+static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradient"},
+                             {AB_NEED_VELOCITY_GRADIENT, "velocity gradient"},
+                             {AB_NEED_SHARED_NODES, "shared nodes"},
+                             {AB_NEED_MASS_GRADIENT, "mass gradient"},
+                             {AB_NEED_AREA_VECTOR, "area vector"},
+                             {AB_NEED_NEAR_POINTS, "points near the node"}};
+static const word gives[] = {{AB_GIVE_STRESS, "stress"},
+                             {AB_GIVE_DISSIPATION, "dissipation"},
+                             {AB_GIVE_WAVE_SPEED, "wave speed"},
+                             {AB_GIVE_POINTS, "contact points (algorithm)"},
+                             {AB_GIVE_IMPULSE, "impulses (response)"}};
 static const char *const shapes[] = {"?", "scalar", "vector", "symmetric tensor", "full tensor"};
 
 static int longest(int width, const char *text) {
@@ -38,27 +47,39 @@ static void describe_range(const ab_param *param, char *text, size_t size) {
     const bool any = param->min == 0.0 && param->max == 0.0, low = !any && isfinite(param->min), high = !any && isfinite(param->max);
     const char *const above = param->flags & AB_MIN_OPEN ? ">" : ">=", *const below = param->flags & AB_MAX_OPEN ? "<" : "<=";
     const char *const left = param->flags & AB_MIN_OPEN ? "<" : "<=";
-    const char *const what = param->type == AB_INTEGER ? "whole, " : param->type == AB_TABLE ? param->flags & AB_COLUMNS_2 ? "pairs, " : "table, " : "";
+    const char *const what = param->type == AB_INTEGER ? "whole, "
+                             : param->type == AB_TABLE ? param->flags & AB_COLUMNS_2 ? "pairs, " : "table, "
+                                                       : "";
     if (param->type == AB_CHOICE) {
         size_t used = 0;
-        for (const char *c = param->choices; *c && used + 4 < size; c++) used += (size_t)snprintf(text + used, size - used, *c == '|' ? " | " : "%c", *c);
+        for (const char *c = param->choices; *c && used + 4 < size; c++)
+            used += (size_t)snprintf(text + used, size - used, *c == '|' ? " | " : "%c", *c);
         if (param->flags & AB_OR_DIRECTION && used + 12 < size) snprintf(text + used, size - used, " | [x, y]");
-    } else if (param->type == AB_FLAG) snprintf(text, size, "true | false");
-    else if (low && high) snprintf(text, size, "%s%g %s %s %s %g", what, param->min, left, param->name, below, param->max);
-    else if (low) snprintf(text, size, "%s%s %g", what, above, param->min);
-    else if (high) snprintf(text, size, "%s%s %g", what, below, param->max);
-    else snprintf(text, size, "%sany", what);
+    } else if (param->type == AB_FLAG)
+        snprintf(text, size, "true | false");
+    else if (low && high)
+        snprintf(text, size, "%s%g %s %s %s %g", what, param->min, left, param->name, below, param->max);
+    else if (low)
+        snprintf(text, size, "%s%s %g", what, above, param->min);
+    else if (high)
+        snprintf(text, size, "%s%s %g", what, below, param->max);
+    else
+        snprintf(text, size, "%sany", what);
 }
 
 static void describe_default(const ab_param *param, char *text, size_t size) {
-    if (param->flags & AB_REQUIRED) snprintf(text, size, "required");
-    else if (param->type == AB_TABLE) snprintf(text, size, "default: empty");
-    else if (param->type == AB_FLAG) snprintf(text, size, "default %s", param->initial != 0.0 ? "true" : "false");
+    if (param->flags & AB_REQUIRED)
+        snprintf(text, size, "required");
+    else if (param->type == AB_TABLE)
+        snprintf(text, size, "default: empty");
+    else if (param->type == AB_FLAG)
+        snprintf(text, size, "default %s", param->initial != 0.0 ? "true" : "false");
     else if (param->type == AB_CHOICE) {
         const char *start = param->choices;
         for (int place = (int)param->initial; place > 0; place--) start = strchr(start, '|') + 1;
         snprintf(text, size, "default %.*s", (int)strcspn(start, "|"), start);
-    } else snprintf(text, size, "default %g", param->initial);
+    } else
+        snprintf(text, size, "default %g", param->initial);
 }
 
 static void print_settings(const ab_class *class_) {
@@ -92,7 +113,8 @@ static void print_class(const ab_loaded_class *loaded) {
     printf("  %s\n", class_->nstate ? "states" : "no states");
     for (uint32_t i = 0; i < class_->nstate; i++) {
         const ab_state *state = &class_->state[i];
-        printf("    %s  %s  %s, starts at %g\n    %*s  %s\n", state->name, state->unit, shapes[state->shape], state->initial, (int)strlen(state->name), "", state->help);
+        printf("    %s  %s  %s, starts at %g\n    %*s  %s\n", state->name, state->unit, shapes[state->shape], state->initial,
+               (int)strlen(state->name), "", state->help);
     }
 }
 
@@ -101,12 +123,13 @@ static void list(const ab_registry *registry) {
     int name = 4, version = 7, help = 0;
     for (size_t i = 0; i < count; i++) {
         const ab_loaded_class *loaded = ab_registry_class(registry, i);
-        name = longest(name, loaded->class_.name), version = longest(version, loaded->plugin_version), help = longest(help, loaded->class_.help);
+        name = longest(name, loaded->class_.name), version = longest(version, loaded->plugin_version),
+        help = longest(help, loaded->class_.help);
     }
     for (size_t i = 0; i < count; i++) {
         const ab_loaded_class *loaded = ab_registry_class(registry, i);
-        printf("%-8s  %-*s  %-*s  %-*s  %s\n", ab_kind_name(loaded->class_.kind), name, loaded->class_.name, version, loaded->plugin_version, help,
-               loaded->class_.help, loaded->path);
+        printf("%-8s  %-*s  %-*s  %-*s  %s\n", ab_kind_name(loaded->class_.kind), name, loaded->class_.name, version,
+               loaded->plugin_version, help, loaded->class_.help, loaded->path);
     }
 }
 
@@ -125,13 +148,15 @@ int ab_command_plugins(int argc, char **argv, const char *plugin_path) {
     ab_registry *registry = NULL;
     ab_status status = report ? AB_OK : AB_FAILED;
     if (status == AB_OK && argc > 1 && strcmp(argv[1], "show") != 0)
-        status = ab_report_error(report, AB_NOWHERE, "unknown word '%s' behind `abut plugins`; write `abut plugins` or `abut plugins show NAME`", argv[1]);
+        status = ab_report_error(report, AB_NOWHERE,
+                                 "unknown word '%s' behind `abut plugins`; write `abut plugins` or `abut plugins show NAME`", argv[1]);
     else if (status == AB_OK && argc > 1 && argc != 3)
         status = ab_report_error(report, AB_NOWHERE, "`abut plugins show` takes one name; `abut plugins` lists them");
     if (status == AB_OK) status = ab_registry_create(plugin_path, &registry, report);
     if (status == AB_OK) {
         status = ab_registry_load_all(registry, report); /* what is refused is said, and the rest is shown all the same */
-        if (argc == 1) list(registry);
+        if (argc == 1)
+            list(registry);
         else {
             const ab_status found = show(registry, argv[2], report);
             if (status == AB_OK) status = found;

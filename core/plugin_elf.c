@@ -50,7 +50,8 @@ static bool read_address(const image *elf, ElfW(Addr) address, void *buffer, uin
         const ElfW(Phdr) *segment = &elf->segment[s];
         if (segment->p_type != PT_LOAD || address < segment->p_vaddr) continue;
         const uint64_t inside = address - segment->p_vaddr;
-        if (inside < segment->p_filesz && bytes <= segment->p_filesz - inside) return read_file(elf, segment->p_offset + inside, buffer, bytes);
+        if (inside < segment->p_filesz && bytes <= segment->p_filesz - inside)
+            return read_file(elf, segment->p_offset + inside, buffer, bytes);
     }
     return false;
 }
@@ -61,8 +62,9 @@ static bool read_header(image *elf, ab_refusal *refusal) {
     if (!read_file(elf, 0, header->e_ident, EI_NIDENT) || memcmp(header->e_ident, ELFMAG, SELFMAG) != 0)
         return ab_refuse(refusal, "is not a shared object (it does not begin as an ELF file does)");
     if (!read_file(elf, 0, header, sizeof *header)) return ab_refuse(refusal, "is damaged: it ends inside its header");
-    if (header->e_ident[EI_CLASS] != own_class) return ab_refuse(refusal, "is an object for machines with %s-bit addresses; build it for this one",
-                                                                 header->e_ident[EI_CLASS] == ELFCLASS32 ? "32" : "64");
+    if (header->e_ident[EI_CLASS] != own_class)
+        return ab_refuse(refusal, "is an object for machines with %s-bit addresses; build it for this one",
+                         header->e_ident[EI_CLASS] == ELFCLASS32 ? "32" : "64");
     ElfW(Ehdr) own; /* what this program runs on */
     const int self = open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
     if (self >= 0) {
@@ -94,7 +96,8 @@ static bool read_dynamic(image *elf, ab_refusal *refusal) {
     const uint64_t count = table->p_filesz / sizeof(ElfW(Dyn));
     for (uint64_t i = 0; i < count && i < DYNAMIC_MAX; i++) {
         ElfW(Dyn) entry;
-        if (!read_file(elf, table->p_offset + i * sizeof entry, &entry, sizeof entry)) return ab_refuse(refusal, "is damaged: it ends inside its dynamic table");
+        if (!read_file(elf, table->p_offset + i * sizeof entry, &entry, sizeof entry))
+            return ab_refuse(refusal, "is damaged: it ends inside its dynamic table");
         switch (entry.d_tag) {
         case DT_SYMTAB: elf->symbols = entry.d_un.d_ptr; break;
         case DT_STRTAB: elf->strings = entry.d_un.d_ptr; break;
@@ -105,12 +108,13 @@ static bool read_dynamic(image *elf, ab_refusal *refusal) {
         }
         if (entry.d_tag == DT_NULL) break;
     }
-    if (!elf->symbols || !elf->strings || (!elf->gnu_hash && !elf->sysv_hash)) return ab_refuse(refusal, "is damaged: its dynamic table has no symbols");
+    if (!elf->symbols || !elf->strings || (!elf->gnu_hash && !elf->sysv_hash))
+        return ab_refuse(refusal, "is damaged: its dynamic table has no symbols");
     return true;
 }
 
 /* True when symbol number `index` has that name; it is then in *symbol. */
-static bool symbol_is(const image *elf, uint32_t index, const char *name, ElfW(Sym) *symbol) {
+static bool symbol_is(const image *elf, uint32_t index, const char *name, ElfW(Sym) * symbol) {
     char text[64];
     const size_t length = strlen(name) + 1;
     return length <= sizeof text && read_address(elf, elf->symbols + (ElfW(Addr))index * sizeof *symbol, symbol, sizeof *symbol) &&
@@ -118,13 +122,14 @@ static bool symbol_is(const image *elf, uint32_t index, const char *name, ElfW(S
            read_address(elf, elf->strings + symbol->st_name, text, length) && memcmp(text, name, length) == 0;
 }
 
-static bool find_by_gnu_hash(const image *elf, const char *name, ElfW(Sym) *symbol) {
+static bool find_by_gnu_hash(const image *elf, const char *name, ElfW(Sym) * symbol) {
     uint32_t hash = 5381, head[4], index, word; /* head: buckets, first symbol, words of the filter, its shift */
     for (const unsigned char *c = (const unsigned char *)name; *c; c++) hash = hash * 33 + *c;
     if (!read_address(elf, elf->gnu_hash, head, sizeof head) || head[0] == 0) return false;
     const ElfW(Addr) buckets = elf->gnu_hash + sizeof head + (ElfW(Addr))head[2] * sizeof(ElfW(Addr));
     const ElfW(Addr) chains = buckets + (ElfW(Addr))head[0] * sizeof(uint32_t);
-    if (!read_address(elf, buckets + (ElfW(Addr))(hash % head[0]) * sizeof index, &index, sizeof index) || index < head[1] || index == 0) return false;
+    if (!read_address(elf, buckets + (ElfW(Addr))(hash % head[0]) * sizeof index, &index, sizeof index) || index < head[1] || index == 0)
+        return false;
     for (long steps = 0; steps < CHAIN_MAX; steps++, index++) {
         if (!read_address(elf, chains + (ElfW(Addr))(index - head[1]) * sizeof word, &word, sizeof word)) return false;
         if ((word | 1u) == (hash | 1u) && symbol_is(elf, index, name, symbol)) return true;
@@ -133,7 +138,7 @@ static bool find_by_gnu_hash(const image *elf, const char *name, ElfW(Sym) *symb
     return false;
 }
 
-static bool find_by_sysv_hash(const image *elf, const char *name, ElfW(Sym) *symbol) {
+static bool find_by_sysv_hash(const image *elf, const char *name, ElfW(Sym) * symbol) {
     uint32_t hash = 0, head[2], index; /* head: buckets, symbols */
     for (const unsigned char *c = (const unsigned char *)name; *c; c++) {
         hash = (hash << 4) + *c;
@@ -159,10 +164,14 @@ static bool read_head(image *elf, const char *name, ab_plugin_head *head, ab_ref
     const int type = symbol.st_info & 0xf; /* ELF64_ST_TYPE and ELF32_ST_TYPE alike */
     if (type != STT_OBJECT)
         return ab_refuse(refusal, "has a symbol '%s' that is %s, not data; define `AB_EXPORT const ab_plugin %s`", name,
-                         type == STT_FUNC || type == STT_GNU_IFUNC ? "a function" : type == STT_TLS ? "thread-local" : "of no known type", name);
+                         type == STT_FUNC || type == STT_GNU_IFUNC ? "a function"
+                         : type == STT_TLS                         ? "thread-local"
+                                                                   : "of no known type",
+                         name);
     const size_t bytes = offsetof(ab_plugin_head, symbol_size);
     head->symbol_size = symbol.st_size;
-    if (symbol.st_size < bytes) return ab_refuse(refusal, "has a descriptor '%s' of only %llu bytes", name, (unsigned long long)symbol.st_size);
+    if (symbol.st_size < bytes)
+        return ab_refuse(refusal, "has a descriptor '%s' of only %llu bytes", name, (unsigned long long)symbol.st_size);
     if (!read_address(elf, symbol.st_value, head, bytes))
         return ab_refuse(refusal, "has a descriptor '%s' whose content is not in the file; it must be initialised data", name);
     return true;

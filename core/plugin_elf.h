@@ -14,7 +14,9 @@ typedef struct ab_plugin_head { /* the first fields of every ab_plugin of every 
     uint64_t symbol_size; /* bytes of the symbol, from the symbol table */
 } ab_plugin_head;
 
-typedef struct ab_refusal { char text[600]; } ab_refusal; /* why a file is not taken, as the end of "FILE: ..." */
+typedef struct ab_refusal {
+    char text[600];
+} ab_refusal; /* why a file is not taken, as the end of "FILE: ..." */
 
 /* Formats the reason; returns false, so that `return ab_refuse(...)` reads well. */
 bool ab_refuse(ab_refusal *refusal, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -19,7 +19,7 @@ typedef struct folder { /* an entry of the search path */
 
 typedef struct candidate { /* a file that may be a plugin */
     char *path;
-    uint32_t kind;         /* by the folder it lies in; 0: any */
+    uint32_t kind; /* by the folder it lies in; 0: any */
     dev_t device;
     ino_t inode;
     bool opened, refused;
@@ -123,7 +123,9 @@ static int by_name(const void *a, const void *b) { return strcmp(*(char *const *
 static ab_status list_files(ab_registry *registry, const char *path, uint32_t kind, ab_report *report) {
     DIR *directory = opendir(path);
     if (!directory)
-        return errno == ENOENT || errno == ENOTDIR ? AB_OK : ab_report_error(report, AB_NOWHERE, "cannot read the plugin folder '%s': %s", path, strerror(errno));
+        return errno == ENOENT || errno == ENOTDIR
+                   ? AB_OK
+                   : ab_report_error(report, AB_NOWHERE, "cannot read the plugin folder '%s': %s", path, strerror(errno));
     char **names = NULL;
     size_t count = 0;
     ab_status status = AB_OK;
@@ -145,8 +147,10 @@ static ab_status list_files(ab_registry *registry, const char *path, uint32_t ki
             memset(&file, 0, sizeof file);
         }
         candidate *added = status == AB_OK && !known ? grow(&registry->candidates, &registry->candidate_count, sizeof *added) : NULL;
-        if (added) *added = (candidate){.path = names[i], .kind = kind, .device = file.st_dev, .inode = file.st_ino};
-        else free(names[i]);
+        if (added)
+            *added = (candidate){.path = names[i], .kind = kind, .device = file.st_dev, .inode = file.st_ino};
+        else
+            free(names[i]);
         if (!added && !known && status == AB_OK) status = no_memory(report);
     }
     free(names);
@@ -221,16 +225,22 @@ static bool add_classes(ab_registry *registry, candidate *from) {
     for (uint32_t i = 0; i < file->plugin.class_count; i++) {
         const ab_class *class_ = &file->classes[i].class_;
         const ab_loaded_class *other = known_class(registry, class_->kind, class_->name);
-        if (other) return ab_refuse(&from->refusal, "offers the %s class '%s', and so does %s; take one of them off the search path",
-                                    ab_kind_name(class_->kind), class_->name, other->path);
+        if (other)
+            return ab_refuse(&from->refusal, "offers the %s class '%s', and so does %s; take one of them off the search path",
+                             ab_kind_name(class_->kind), class_->name, other->path);
     }
     for (uint32_t i = 0; i < file->plugin.class_count; i++) {
         const ab_class_copy *copy = &file->classes[i];
         ab_loaded_class *made = calloc(1, sizeof *made);
         ab_loaded_class **added = made ? grow(&registry->classes, &registry->class_count, sizeof *added) : NULL;
         if (!added) return free(made), ab_refuse(&from->refusal, "cannot be loaded: no memory");
-        *made = (ab_loaded_class){.class_ = copy->class_, .material = copy->material, .boundary = copy->boundary, .contact = copy->contact,
-                                  .path = from->path, .plugin_name = file->plugin.name, .plugin_version = file->plugin.version,
+        *made = (ab_loaded_class){.class_ = copy->class_,
+                                  .material = copy->material,
+                                  .boundary = copy->boundary,
+                                  .contact = copy->contact,
+                                  .path = from->path,
+                                  .plugin_name = file->plugin.name,
+                                  .plugin_version = file->plugin.version,
                                   .plugin_licence = file->plugin.licence};
         *added = made;
     }
@@ -274,7 +284,10 @@ ab_status ab_registry_not_found(const ab_registry *registry, uint32_t kind, cons
     if (names) ab_suggest_tail(name, names, count, tail, sizeof tail - 1); /* room for a semicolon */
     ab_registry_paths(registry, paths, sizeof paths);
     ab_report_error(report, mark, "no %s '%s'%s looked in: %s", words[kind <= AB_CONTACT ? kind : 0], name,
-                    tail[0] == '\0' ? ";" : tail[strlen(tail) - 1] == '?' ? tail : strcat(tail, ";"), paths);
+                    tail[0] == '\0'                 ? ";"
+                    : tail[strlen(tail) - 1] == '?' ? tail
+                                                    : strcat(tail, ";"),
+                    paths);
     free(names);
     return AB_BAD_INPUT;
 }

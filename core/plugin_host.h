@@ -11,11 +11,11 @@ typedef struct ab_registry ab_registry;
 
 /* A loaded class as the host keeps it: its own zero-filled copy of the plugin's tables, normalised to this host's struct sizes. */
 typedef struct ab_loaded_class {
-    ab_class class_;              /* struct_size etc. already checked */
-    ab_material_ops material;     /* zeroed for other kinds */
+    ab_class class_;          /* struct_size etc. already checked */
+    ab_material_ops material; /* zeroed for other kinds */
     ab_boundary_ops boundary;
     ab_contact_ops contact;
-    const char *path;             /* file it came from */
+    const char *path; /* file it came from */
     const char *plugin_name, *plugin_version, *plugin_licence;
 } ab_loaded_class;
 
@@ -46,10 +46,10 @@ const ab_loaded_class *ab_registry_class(const ab_registry *registry, size_t ind
 
 /* Host services for create(). One ab_service per instance, which must not move afterwards; messages are kept for the error that follows. */
 typedef struct ab_service {
-    ab_host host;           /* pass &service.host to create; whoever has a finder sets host.reserve (and its context) before */
-    char message[512];      /* last message */
-    char who[96];           /* "material 'soil' (von-mises)" */
-    atomic_flag busy;       /* while a thread writes message */
+    ab_host host;      /* pass &service.host to create; whoever has a finder sets host.reserve (and its context) before */
+    char message[512]; /* last message */
+    char who[96];      /* "material 'soil' (von-mises)" */
+    atomic_flag busy;  /* while a thread writes message */
 } ab_service;
 void ab_service_init(ab_service *service, const char *who);
 

@@ -47,8 +47,10 @@ static bool take_tables(ab_plugin_file *file, const ab_plugin_head *head, const 
     for (uint32_t i = 0; i < file->plugin.class_count; i++) {
         if (!ab_check_class(file->plugin.classes[i], &file->classes[i], refusal)) return false;
         for (uint32_t other = 0; other < i; other++)
-            if (file->classes[other].class_.kind == file->classes[i].class_.kind && strcmp(file->classes[other].class_.name, file->classes[i].class_.name) == 0)
-                return ab_refuse(refusal, "offers the %s class '%s' twice", ab_kind_name(file->classes[i].class_.kind), file->classes[i].class_.name);
+            if (file->classes[other].class_.kind == file->classes[i].class_.kind &&
+                strcmp(file->classes[other].class_.name, file->classes[i].class_.name) == 0)
+                return ab_refuse(refusal, "offers the %s class '%s' twice", ab_kind_name(file->classes[i].class_.kind),
+                                 file->classes[i].class_.name);
     }
     return true;
 }
@@ -68,8 +70,10 @@ bool ab_plugin_load(const char *path, ab_plugin_file *file, ab_refusal *refusal)
     }
     bool good = false;
     if (after != before)
-        ab_refuse(refusal, "changes the floating-point mode of the program as it is loaded (%s; control word 0x%lx before, 0x%lx after); "
-                  "build and link it without -ffast-math", flushes(after) && !flushes(before) ? "it turns on flush-to-zero" : "rounding or traps", before, after);
+        ab_refuse(refusal,
+                  "changes the floating-point mode of the program as it is loaded (%s; control word 0x%lx before, 0x%lx after); "
+                  "build and link it without -ffast-math",
+                  flushes(after) && !flushes(before) ? "it turns on flush-to-zero" : "rounding or traps", before, after);
     else
         good = take_tables(file, &head, dlsym(file->handle, symbol_name), refusal);
     if (!good) ab_plugin_unload(file);

@@ -5,9 +5,9 @@
 #include "core/plugin_check.h"
 
 typedef struct ab_plugin_file {
-    void *handle;               /* of dlopen */
-    ab_plugin plugin;           /* zero-filled copy */
-    ab_class_copy *classes;     /* plugin.class_count of them */
+    void *handle;           /* of dlopen */
+    ab_plugin plugin;       /* zero-filled copy */
+    ab_class_copy *classes; /* plugin.class_count of them */
 } ab_plugin_file;
 
 /* Checks the file, loads it, checks what it brought. `path` is absolute. False with the reason; nothing is then left loaded. */

@@ -39,6 +39,12 @@ void ab_service_init(ab_service *service, const char *who) {
     memset(service, 0, sizeof *service);
     atomic_flag_clear(&service->busy);
     snprintf(service->who, sizeof service->who, "%s", who);
-    service->host = (ab_host){.struct_size = sizeof(ab_host), .abi_major = AB_ABI_MAJOR, .abi_minor = AB_ABI_MINOR, .context = service,
-                              .allocate = service_allocate, .release = service_release, .message = service_message, .log = service_log};
+    service->host = (ab_host){.struct_size = sizeof(ab_host),
+                              .abi_major = AB_ABI_MAJOR,
+                              .abi_minor = AB_ABI_MINOR,
+                              .context = service,
+                              .allocate = service_allocate,
+                              .release = service_release,
+                              .message = service_message,
+                              .log = service_log};
 }

@@ -38,8 +38,10 @@ static inline void stress(double lambda, double two_mu, double mu, size_t count,
 static int update(void *self, ab_batch *b) {
     const law *l = self;
     const double *strain = b->strain_increment;
-    if (b->count == 8 && b->ld == 8) stress(l->lambda, 2 * l->mu, l->mu, 8, 8, strain, b->stress0, b->stress1); /* constants make vector code */
-    else stress(l->lambda, 2 * l->mu, l->mu, b->count, b->ld, strain, b->stress0, b->stress1);
+    if (b->count == 8 && b->ld == 8)
+        stress(l->lambda, 2 * l->mu, l->mu, 8, 8, strain, b->stress0, b->stress1); /* constants make vector code */
+    else
+        stress(l->lambda, 2 * l->mu, l->mu, b->count, b->ld, strain, b->stress0, b->stress1);
     for (size_t c = 4; c < b->components; c++)
         for (size_t i = 0; i < b->count; i++) b->stress1[c * b->ld + i] = b->stress0[c * b->ld + i] + l->mu * strain[c * b->ld + i];
     if (b->wave_speed)
@@ -53,9 +55,18 @@ static const ab_param params[] = {
 };
 static const ab_material_ops ops = {sizeof ops, NULL, update};
 static const ab_class linear_elastic = {
-    .struct_size = sizeof(ab_class), .kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
-    .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED, .nparam = 2, .name = "linear-elastic", .help = "isotropic linear elasticity, small strain, any rotation",
-    .reference = "Hughes and Winget 1980 (rate form)", .param = params, .create = create, .destroy = destroy, .ops = &ops,
+    .struct_size = sizeof(ab_class),
+    .kind = AB_MATERIAL,
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED,
+    .nparam = 2,
+    .name = "linear-elastic",
+    .help = "isotropic linear elasticity, small strain, any rotation",
+    .reference = "Hughes and Winget 1980 (rate form)",
+    .param = params,
+    .create = create,
+    .destroy = destroy,
+    .ops = &ops,
 };
 static const ab_class *const classes[] = {&linear_elastic};
 AB_EXPORT const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "linear-elastic", "1.0", "MIT", classes};

@@ -47,27 +47,38 @@ static inline double natural_log(double x) {
     k -= 0x1p52 + 1023.0;
     const double f = m - 1.0, half_square = 0.5 * f * f, s = f / (2.0 + f), z = s * s, w = z * z;
     const double even = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-    const double odd = z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+    const double odd =
+        z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
     return k * 6.93147180369123816490e-01 - ((half_square - (s * (half_square + (odd + even)) + k * 1.90821492927058770002e-10)) - f);
 }
 
-typedef struct strain { double xx, yy, zz, xy, yz, zx, J; } strain; /* b and J */
+typedef struct strain {
+    double xx, yy, zz, xy, yz, zx, J;
+} strain; /* b and J */
 
 static inline __attribute__((always_inline)) strain left_cauchy_green(const double *restrict F, size_t ld, size_t i, int dimension) {
     if (dimension == 2) {
         const double xx = F[i], xy = F[ld + i], yx = F[2 * ld + i], yy = F[3 * ld + i], zz = F[4 * ld + i];
-        return (strain){.xx = xx * xx + xy * xy, .yy = yx * yx + yy * yy, .zz = zz * zz, .xy = xx * yx + xy * yy, .J = (xx * yy - xy * yx) * zz};
+        return (strain){
+            .xx = xx * xx + xy * xy, .yy = yx * yx + yy * yy, .zz = zz * zz, .xy = xx * yx + xy * yy, .J = (xx * yy - xy * yx) * zz};
     }
     const double xx = F[i], xy = F[ld + i], xz = F[2 * ld + i], yx = F[3 * ld + i], yy = F[4 * ld + i], yz = F[5 * ld + i];
     const double zx = F[6 * ld + i], zy = F[7 * ld + i], zz = F[8 * ld + i];
-    return (strain){.xx = xx * xx + xy * xy + xz * xz, .yy = yx * yx + yy * yy + yz * yz, .zz = zx * zx + zy * zy + zz * zz,
-                    .xy = xx * yx + xy * yy + xz * yz, .yz = yx * zx + yy * zy + yz * zz, .zx = zx * xx + zy * xy + zz * xz,
+    return (strain){.xx = xx * xx + xy * xy + xz * xz,
+                    .yy = yx * yx + yy * yy + yz * yz,
+                    .zz = zx * zx + zy * zy + zz * zz,
+                    .xy = xx * yx + xy * yy + xz * yz,
+                    .yz = yx * zx + yy * zy + yz * zz,
+                    .zx = zx * xx + zy * xy + zz * xz,
                     .J = xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx)};
 }
 
 static inline int is_turned_over(double J) { return !(J > 0x1p-1000 && J < 0x1p1000); } /* NaN is, too */
 
-typedef struct rows { const double *F, *density; double *stress, *speed; } rows; /* speed may be NULL */
+typedef struct rows {
+    const double *F, *density;
+    double *stress, *speed;
+} rows; /* speed may be NULL */
 
 /* Eight items, whose rows are ld apart. Returns how many are turned over; their stress is that of J = 1. Inlined into one function per
  * dimension and nowhere else, so that an item has the same bits in any batch, however the compiler fuses products and sums. */
@@ -147,8 +158,8 @@ static int update(void *self, ab_batch *b) {
     long bad = 0;
     size_t i = 0;
     for (; i + 8 <= b->count; i += 8)
-        bad += (b->dimension == 2 ? plane : space)(l, b->ld, &(rows){b->deformation_gradient + i, b->density + i, b->stress1 + i,
-                                                                     b->wave_speed ? b->wave_speed + i : NULL});
+        bad += (b->dimension == 2 ? plane : space)(
+            l, b->ld, &(rows){b->deformation_gradient + i, b->density + i, b->stress1 + i, b->wave_speed ? b->wave_speed + i : NULL});
     if (i < b->count) bad += few(l, b, i);
     return bad == 0 ? 0 : complain(l, b);
 }
@@ -159,9 +170,19 @@ static const ab_param params[] = {
 };
 static const ab_material_ops ops = {sizeof ops, NULL, update};
 static const ab_class neo_hookean = {
-    .struct_size = sizeof(ab_class), .kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN | AB_SPACE_3D, .needs = AB_NEED_DEFORMATION_GRADIENT,
-    .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED, .nparam = 2, .name = "neo-hookean", .help = "compressible neo-Hookean elasticity, any strain",
-    .reference = "Bonet and Wood 2008, eq. 6.29", .param = params, .create = create, .destroy = destroy, .ops = &ops,
+    .struct_size = sizeof(ab_class),
+    .kind = AB_MATERIAL,
+    .spaces = AB_PLANE_STRAIN | AB_SPACE_3D,
+    .needs = AB_NEED_DEFORMATION_GRADIENT,
+    .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED,
+    .nparam = 2,
+    .name = "neo-hookean",
+    .help = "compressible neo-Hookean elasticity, any strain",
+    .reference = "Bonet and Wood 2008, eq. 6.29",
+    .param = params,
+    .create = create,
+    .destroy = destroy,
+    .ops = &ops,
 };
 static const ab_class *const classes[] = {&neo_hookean};
 AB_EXPORT const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "neo-hookean", "1.0", "MIT", classes};

@@ -18,8 +18,8 @@
 
 typedef struct law {
     const ab_host *host;
-    double lambda, two_mu, mu;                   /* Pa */
-    double yield, hardening, residual;           /* Pa */
+    double lambda, two_mu, mu;                        /* Pa */
+    double yield, hardening, residual;                /* Pa */
     double slope_inverse, three_mu, three_mu_inverse; /* 1/(3 G + hardening), 3 G, 1/(3 G) */
 } law;
 
@@ -30,14 +30,23 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
     const double yield = settings[YIELD].real, hardening = settings[HARDENING].real, residual = settings[RESIDUAL].real;
     char text[200] = "";
     if (hardening <= -3 * mu)
-        snprintf(text, sizeof text, "hardening %g Pa softens faster than elasticity can unload: it must be above -3 G = %g Pa", hardening, -3 * mu);
+        snprintf(text, sizeof text, "hardening %g Pa softens faster than elasticity can unload: it must be above -3 G = %g Pa", hardening,
+                 -3 * mu);
     else if (residual > yield)
         snprintf(text, sizeof text, "residual %g Pa is above yield %g Pa", residual, yield);
     if (text[0]) return host->message(host->context, text), -1;
     law *made = host->allocate(host->context, sizeof *made);
     if (!made) return -1;
-    *made = (law){.host = host, .lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), .two_mu = 2 * mu, .mu = mu, .yield = yield, .hardening = hardening,
-                  .residual = residual, .slope_inverse = 1 / (3 * mu + hardening), .three_mu = 3 * mu, .three_mu_inverse = 1 / (3 * mu)};
+    *made = (law){.host = host,
+                  .lambda = E * nu / ((1 + nu) * (1 - 2 * nu)),
+                  .two_mu = 2 * mu,
+                  .mu = mu,
+                  .yield = yield,
+                  .hardening = hardening,
+                  .residual = residual,
+                  .slope_inverse = 1 / (3 * mu + hardening),
+                  .three_mu = 3 * mu,
+                  .three_mu_inverse = 1 / (3 * mu)};
     *self = made;
     return 0;
 }
@@ -50,8 +59,9 @@ static void destroy(void *self) {
 /* Eight items, whose rows are ld apart. Inlined into one function per number of components and nowhere else, so that an item has the same bits
  * in any batch, however the compiler fuses products and sums. */
 static inline __attribute__((always_inline)) void return_to_surface(const law l, size_t ld, size_t components,
-        const double *restrict strain, const double *restrict stress0, const double *restrict plastic0, double *restrict stress1,
-        double *restrict plastic1, double *restrict dissipation) {
+                                                                    const double *restrict strain, const double *restrict stress0,
+                                                                    const double *restrict plastic0, double *restrict stress1,
+                                                                    double *restrict plastic1, double *restrict dissipation) {
     ROWS_APART
     for (size_t i = 0; i < 8; i++) {
         const double volumetric = l.lambda * (strain[i] + strain[ld + i] + strain[2 * ld + i]);
@@ -67,7 +77,7 @@ static inline __attribute__((always_inline)) void return_to_surface(const law l,
         const double line = l.yield + l.hardening * plastic0[i];
         const double yield = line > l.residual ? line : l.residual;
         const double on_line = (trial - yield) * l.slope_inverse, line_end = yield + l.hardening * on_line;
-        const int ends = line_end < l.residual, flows = trial > yield;
+        const int ends = line_end<l.residual, flows = trial> yield;
         const double end = ends ? l.residual : line_end;
         const double increment = flows ? (ends ? (trial - l.residual) * l.three_mu_inverse : on_line) : 0.0;
         const double ratio = flows ? end / trial : 1.0;
@@ -82,7 +92,10 @@ static inline __attribute__((always_inline)) void return_to_surface(const law l,
     }
 }
 
-typedef struct rows { const double *strain, *stress0, *plastic0; double *stress1, *plastic1, *dissipation; } rows;
+typedef struct rows {
+    const double *strain, *stress0, *plastic0;
+    double *stress1, *plastic1, *dissipation;
+} rows;
 
 static __attribute__((noinline)) void plane(const law *l, size_t ld, const rows *r) {
     return_to_surface(*l, ld, 4, r->strain, r->stress0, r->plastic0, r->stress1, r->plastic1, r->dissipation);
@@ -99,7 +112,8 @@ static void few(const law *l, ab_batch *b, size_t first) {
     for (size_t i = 0; i < 8; i++) {
         const size_t from = first + (i < count ? i : count - 1);
         plastic0[i] = b->state0[from];
-        for (size_t c = 0; c < b->components; c++) strain[c * 8 + i] = b->strain_increment[c * b->ld + from], stress0[c * 8 + i] = b->stress0[c * b->ld + from];
+        for (size_t c = 0; c < b->components; c++)
+            strain[c * 8 + i] = b->strain_increment[c * b->ld + from], stress0[c * 8 + i] = b->stress0[c * b->ld + from];
     }
     (b->components == 4 ? plane : space)(l, 8, &(rows){strain, stress0, plastic0, stress1, plastic1, dissipation});
     for (size_t i = 0; i < count; i++) {
@@ -113,8 +127,8 @@ static int update(void *self, ab_batch *b) {
     const law *l = self;
     size_t i = 0;
     for (; i + 8 <= b->count; i += 8)
-        (b->components == 4 ? plane : space)(l, b->ld, &(rows){b->strain_increment + i, b->stress0 + i, b->state0 + i, b->stress1 + i, b->state1 + i,
-                                                               b->dissipation + i});
+        (b->components == 4 ? plane : space)(
+            l, b->ld, &(rows){b->strain_increment + i, b->stress0 + i, b->state0 + i, b->stress1 + i, b->state1 + i, b->dissipation + i});
     if (i < b->count) few(l, b, i);
     if (b->wave_speed)
         for (i = 0; i < b->count; i++) b->wave_speed[i] = sqrt((l->lambda + l->two_mu) / b->density[i]);
@@ -125,16 +139,27 @@ static const ab_param params[] = {
     {"E", "Pa", "Young's modulus", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
     {"nu", "1", "Poisson's ratio", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN | AB_MAX_OPEN, 0, -1, 0.5},
     {"yield", "Pa", "yield stress in uniaxial tension", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
-    {"hardening", "Pa", "slope of the yield stress over equivalent plastic strain; negative: softening, above -3 G", NULL, AB_REAL, 0, 0, -INFINITY, INFINITY},
+    {"hardening", "Pa", "slope of the yield stress over equivalent plastic strain; negative: softening, above -3 G", NULL, AB_REAL, 0, 0,
+     -INFINITY, INFINITY},
     {"residual", "Pa", "yield stress never falls below it", NULL, AB_REAL, 0, 0, 0, INFINITY},
 };
 static const ab_state states[] = {{"plastic_strain", "1", "equivalent plastic strain", AB_SCALAR, AB_AVERAGE, 0}};
 static const ab_material_ops ops = {sizeof ops, NULL, update};
 static const ab_class von_mises = {
-    .struct_size = sizeof(ab_class), .kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
-    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED, .nparam = 5, .nstate = 1, .name = "von-mises",
-    .help = "elastoplasticity of von Mises with linear hardening, or softening to a residual", .reference = "Simo and Hughes 1998, box 3.1",
-    .param = params, .state = states, .create = create, .destroy = destroy, .ops = &ops,
+    .struct_size = sizeof(ab_class),
+    .kind = AB_MATERIAL,
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED,
+    .nparam = 5,
+    .nstate = 1,
+    .name = "von-mises",
+    .help = "elastoplasticity of von Mises with linear hardening, or softening to a residual",
+    .reference = "Simo and Hughes 1998, box 3.1",
+    .param = params,
+    .state = states,
+    .create = create,
+    .destroy = destroy,
+    .ops = &ops,
 };
 static const ab_class *const classes[] = {&von_mises};
 AB_EXPORT const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "von-mises", "1.0", "MIT", classes};

@@ -36,7 +36,8 @@
 #define CLASS_NAME "wrong-class"
 #endif
 #ifndef PARAM
-#define PARAM {"E", "Pa", "Young's modulus", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY}
+#define PARAM                                                                                                                              \
+    { "E", "Pa", "Young's modulus", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY }
 #endif
 #ifndef PARAMS
 #define PARAMS params
@@ -76,11 +77,20 @@ extern const ab_param params[];
 const ab_param params[] = {PARAM};
 static const ab_material_ops ops = {OPS_SIZE, NULL, UPDATE};
 extern const ab_class wrong_class;
-const ab_class wrong_class = {.struct_size = CLASS_SIZE, .kind = KIND, .spaces = AB_PLANE_STRAIN, .gives = GIVES, .nparam = PARAM_COUNT,
-                              .name = CLASS_NAME, .help = "wrong on purpose", .reference = "", .param = PARAMS, .create = create,
-                              .destroy = destroy, .ops = &ops};
+const ab_class wrong_class = {.struct_size = CLASS_SIZE,
+                              .kind = KIND,
+                              .spaces = AB_PLANE_STRAIN,
+                              .gives = GIVES,
+                              .nparam = PARAM_COUNT,
+                              .name = CLASS_NAME,
+                              .help = "wrong on purpose",
+                              .reference = "",
+                              .param = PARAMS,
+                              .create = create,
+                              .destroy = destroy,
+                              .ops = &ops};
 static const ab_class *const classes[] = {CLASSES};
 #ifndef NO_DESCRIPTOR
 AB_EXPORT const ab_plugin abut_plugin_v1 = {STRUCT_SIZE, MAJOR, MINOR, DOUBLE_SIZE, sizeof(size_t), sizeof classes / sizeof *classes,
-                                            "wrong", "1.0", "MIT", classes};
+                                            "wrong",     "1.0", "MIT", classes};
 #endif

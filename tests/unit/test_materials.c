@@ -21,7 +21,8 @@ typedef struct bench { /* one material and room for a batch, with a border behin
     const ab_loaded_class *loaded;
     ab_service service;
     void *self;
-    double density[MOST], strain[ROWS * MOST + CANARY], F[ROWS * MOST + CANARY], stress0[ROWS * MOST + CANARY], stress1[ROWS * MOST + CANARY];
+    double density[MOST], strain[ROWS * MOST + CANARY], F[ROWS * MOST + CANARY], stress0[ROWS * MOST + CANARY],
+        stress1[ROWS * MOST + CANARY];
     double state0[MOST + CANARY], state1[MOST + CANARY], dissipation[MOST + CANARY], speed[MOST + CANARY];
     uint8_t flag[MOST];
     ab_batch batch;
@@ -48,7 +49,8 @@ static bench *open_bench(const char *name) {
 /* E, nu, yield, hardening, residual */
 static bench *create(const char *name, const double settings[5]) {
     bench *b = open_bench(name);
-    ab_value values[5] = {{.real = settings[0]}, {.real = settings[1]}, {.real = settings[2]}, {.real = settings[3]}, {.real = settings[4]}};
+    ab_value values[5] = {
+        {.real = settings[0]}, {.real = settings[1]}, {.real = settings[2]}, {.real = settings[3]}, {.real = settings[4]}};
     assert_int_equal(b->loaded->class_.create(&b->service.host, values, &b->self), 0);
     return b;
 }
@@ -64,11 +66,22 @@ static int update(bench *b, int dimension, size_t count, size_t ld) {
     const bool needs_F = b->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT;
     for (size_t i = 0; i < count; i++) b->density[i] = 1000.0;
     memset(b->flag, 0, sizeof b->flag);
-    b->batch = (ab_batch){.struct_size = sizeof(ab_batch), .dimension = (uint32_t)dimension, .components = dimension == 2 ? 4 : 6, .count = count, .ld = ld,
-                          .dt = 1e-3, .density = b->density, .strain_increment = b->strain, .deformation_gradient = needs_F ? b->F : NULL,
-                          .stress0 = b->stress0, .stress1 = b->stress1, .state0 = b->loaded->class_.nstate ? b->state0 : NULL,
+    b->batch = (ab_batch){.struct_size = sizeof(ab_batch),
+                          .dimension = (uint32_t)dimension,
+                          .components = dimension == 2 ? 4 : 6,
+                          .count = count,
+                          .ld = ld,
+                          .dt = 1e-3,
+                          .density = b->density,
+                          .strain_increment = b->strain,
+                          .deformation_gradient = needs_F ? b->F : NULL,
+                          .stress0 = b->stress0,
+                          .stress1 = b->stress1,
+                          .state0 = b->loaded->class_.nstate ? b->state0 : NULL,
                           .state1 = b->loaded->class_.nstate ? b->state1 : NULL,
-                          .dissipation = b->loaded->class_.gives & AB_GIVE_DISSIPATION ? b->dissipation : NULL, .wave_speed = b->speed, .flag = b->flag};
+                          .dissipation = b->loaded->class_.gives & AB_GIVE_DISSIPATION ? b->dissipation : NULL,
+                          .wave_speed = b->speed,
+                          .flag = b->flag};
     return b->loaded->material.update(b->self, &b->batch);
 }
 
@@ -148,7 +161,8 @@ static void test_neo_hookean_stretched_along_one_axis(void **state) {
             near(sigma[0], mu * (F - 1 / F) + lambda * log(F) / F, 1e7 / F); /* on this path sigma_xx is the first Piola-Kirchhoff stress */
             near(sigma[4], lambda * log(F) / F, 1e7 / F);
             near(sigma[8], lambda * log(F) / F, 1e7 / F);
-            assert_true(b->speed[5] >= F * sqrt(((lambda * (1 - log(F)) + mu) / (F * F) + mu) / (F * 1000)) * (1 - 1e-12)); /* never below the true one */
+            assert_true(b->speed[5] >=
+                        F * sqrt(((lambda * (1 - log(F)) + mu) / (F * F) + mu) / (F * 1000)) * (1 - 1e-12)); /* never below the true one */
             /* The slope of the stress is the modulus that the verification problems use. */
             const double h = 1e-5 * F, up[9] = {F + h, 0, 0, 0, 1, 0, 0, 0, 1}, down[9] = {F - h, 0, 0, 0, 1, 0, 0, 0, 1};
             double high[9], low[9];
@@ -267,8 +281,9 @@ static void test_von_mises_uniaxial_strain_follows_the_hand_path(void **state) {
  * step to 1e-10 of its size, on it when the step flowed; dissipation as large as the work, never negative. */
 static void test_von_mises_stays_on_its_surface(void **state) {
     (void)state;
-    static const double laws[][5] = {{1e6, 0.25, 1e3, 1e5, 0},      {1e6, 0.25, 1e3, 0, 0},      {1e6, 0.25, 1e3, -1e5, 200}, {1e6, 0.25, 1e3, -1e5, 0},
-                                     {1e6, 0.49, 1e3, -9e5, 1e-3}, {1e6, -0.5, 1e3, 1e9, 999}, {1e6, 0.25, 1e3, -1.199e6, 500}, {1e6, 0.25, 1e3, -10, 1e3}};
+    static const double laws[][5] = {{1e6, 0.25, 1e3, 1e5, 0},        {1e6, 0.25, 1e3, 0, 0},       {1e6, 0.25, 1e3, -1e5, 200},
+                                     {1e6, 0.25, 1e3, -1e5, 0},       {1e6, 0.49, 1e3, -9e5, 1e-3}, {1e6, -0.5, 1e3, 1e9, 999},
+                                     {1e6, 0.25, 1e3, -1.199e6, 500}, {1e6, 0.25, 1e3, -10, 1e3}};
     for (size_t k = 0; k < sizeof laws / sizeof *laws; k++)
         for (int dimension = 2; dimension <= 3; dimension++) {
             const double yield = laws[k][2], H = laws[k][3], residual = laws[k][4], G = laws[k][0] / (2 * (1 + laws[k][1]));
@@ -286,7 +301,8 @@ static void test_von_mises_stays_on_its_surface(void **state) {
                 for (size_t i = 0; i < count; i++) {
                     const double line = yield + H * b->state1[i], surface = fmax(line, residual), q = mises(b, dimension, ld, i);
                     const double volume = fabs(b->stress1[i] + b->stress1[ld + i] + b->stress1[2 * ld + i]);
-                    const double tolerance = 1e-10 * fmax(surface, yield * 1e-3) + 1e-14 * volume; /* a deviator cannot be better than its stress */
+                    const double tolerance =
+                        1e-10 * fmax(surface, yield * 1e-3) + 1e-14 * volume; /* a deviator cannot be better than its stress */
                     const double increment = b->state1[i] - b->state0[i];
                     if (!(q <= surface + tolerance)) fail_msg("law %zu: q = %.15g above %.15g", k, q, surface);
                     if (increment > 0 && !(fabs(q - surface) <= tolerance)) fail_msg("law %zu: q = %.15g, surface %.15g", k, q, surface);
@@ -299,9 +315,11 @@ static void test_von_mises_stays_on_its_surface(void **state) {
                     for (int c = 3; c < 6; c++)
                         s[c] = dimension == 3 || c == 3 ? b->stress0[(size_t)c * ld + i] + G * b->strain[(size_t)c * ld + i] : 0;
                     const double mean = (s[0] + s[1] + s[2]) / 3;
-                    const double before = sqrt(1.5 * ((s[0] - mean) * (s[0] - mean) + (s[1] - mean) * (s[1] - mean) + (s[2] - mean) * (s[2] - mean)) +
-                                               3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-                    if (!(fabs(before - 3 * G * increment - q) <= 1e-9 * before + tolerance)) fail_msg("law %zu: %.15g - 3 G da = %.15g", k, before, q);
+                    const double before =
+                        sqrt(1.5 * ((s[0] - mean) * (s[0] - mean) + (s[1] - mean) * (s[1] - mean) + (s[2] - mean) * (s[2] - mean)) +
+                             3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+                    if (!(fabs(before - 3 * G * increment - q) <= 1e-9 * before + tolerance))
+                        fail_msg("law %zu: %.15g - 3 G da = %.15g", k, before, q);
                 }
                 memcpy(b->stress0, b->stress1, sizeof b->stress0);
                 memcpy(b->state0, b->state1, sizeof b->state0);
@@ -346,7 +364,8 @@ static void test_a_batch_is_its_items(void **state) {
             for (size_t count = 1; count <= MOST; count++)
                 for (int packed = 0; packed < 2; packed++) {
                     const size_t ld = packed ? count <= 8 ? 8 : count : MOST, components = dimension == 2 ? 4 : 6;
-                    bench *many = create(names[k], (const double[]){1e6, 0.25, 1e3, -1e5, 300}), *one = create(names[k], (const double[]){1e6, 0.25, 1e3, -1e5, 300});
+                    bench *many = create(names[k], (const double[]){1e6, 0.25, 1e3, -1e5, 300}),
+                          *one = create(names[k], (const double[]){1e6, 0.25, 1e3, -1e5, 300});
                     fill(many, dimension, ld);
                     bench *before = malloc(sizeof *before);
                     memcpy(before, many, sizeof *before);
@@ -355,7 +374,8 @@ static void test_a_batch_is_its_items(void **state) {
                     assert_memory_equal(before->F, many->F, sizeof many->F);
                     assert_memory_equal(before->stress0, many->stress0, sizeof many->stress0);
                     assert_memory_equal(before->state0, many->state0, sizeof many->state0);
-                    for (size_t j = 0; j < ROWS * MOST + CANARY; j++) assert_int_equal(many->stress1[j] == -77, j % ld >= count || j / ld >= components);
+                    for (size_t j = 0; j < ROWS * MOST + CANARY; j++)
+                        assert_int_equal(many->stress1[j] == -77, j % ld >= count || j / ld >= components);
                     for (size_t j = 0; j < MOST + CANARY; j++) {
                         const bool mine = j < count, declared = k == 2;
                         assert_int_equal(many->state1[j] == -77, !(mine && declared));
@@ -369,7 +389,8 @@ static void test_a_batch_is_its_items(void **state) {
                         }
                         one->state0[0] = many->state0[i];
                         assert_int_equal(update(one, dimension, 1, 8), 0);
-                        for (size_t c = 0; c < components; c++) assert_memory_equal(&one->stress1[c * 8], &many->stress1[c * ld + i], sizeof(double));
+                        for (size_t c = 0; c < components; c++)
+                            assert_memory_equal(&one->stress1[c * 8], &many->stress1[c * ld + i], sizeof(double));
                         assert_memory_equal(one->speed, &many->speed[i], sizeof(double));
                         if (k == 2) assert_memory_equal(one->state1, &many->state1[i], sizeof(double));
                         if (k == 2) assert_memory_equal(one->dissipation, &many->dissipation[i], sizeof(double));

@@ -237,36 +237,68 @@ static int no_update(void *self, ab_batch *batch) { return (void)self, (void)bat
 static const ab_material_ops no_ops = {sizeof no_ops, NULL, no_update};
 
 static ab_class plain_class(const ab_param *param, uint32_t nparam, const ab_state *own_state, uint32_t nstate) {
-    return (ab_class){.struct_size = sizeof(ab_class), .kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED,
-                      .nparam = nparam, .nstate = nstate, .name = "plain", .help = "plain", .reference = "", .param = param, .state = own_state,
-                      .create = no_create, .destroy = no_destroy, .ops = &no_ops};
+    return (ab_class){.struct_size = sizeof(ab_class),
+                      .kind = AB_MATERIAL,
+                      .spaces = AB_PLANE_STRAIN,
+                      .gives = AB_GIVE_STRESS | AB_GIVE_WAVE_SPEED,
+                      .nparam = nparam,
+                      .nstate = nstate,
+                      .name = "plain",
+                      .help = "plain",
+                      .reference = "",
+                      .param = param,
+                      .state = own_state,
+                      .create = no_create,
+                      .destroy = no_destroy,
+                      .ops = &no_ops};
 }
 
 static void test_tables_that_cannot_be_true_are_refused(void **state) {
     (void)state;
     static const ab_param wrong[] = {
-        {NULL, "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1}, {"", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
-        {"a b", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1}, {"a\nb", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
-        {"a", NULL, "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1}, {"a", "1", NULL, NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
-        {"a", "1", "h\x1b[31m", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1}, {"a", "1", "h", NULL, 0, AB_REQUIRED, 0, 0, 1},
-        {"a", "1", "h", NULL, AB_REAL, 1u << 31, 0, 0, 1}, {"a", "1", "h", NULL, AB_REAL, AB_OR_DIRECTION, 0, 0, 1},
-        {"a", "1", "h", NULL, AB_REAL, AB_COLUMNS_2, 0, 0, 1}, {"a", "1", "h", "x|y", AB_REAL, 0, 0, 0, 1},
-        {"a", NULL, "h", NULL, AB_CHOICE, 0, 0, 0, 0}, {"a", NULL, "h", "", AB_CHOICE, 0, 0, 0, 0}, {"a", NULL, "h", "x||y", AB_CHOICE, 0, 0, 0, 0},
-        {"a", NULL, "h", "x|", AB_CHOICE, 0, 0, 0, 0}, {"a", NULL, "h", "x|y", AB_CHOICE, 0, 2, 0, 0}, {"a", NULL, "h", "x|y", AB_CHOICE, 0, -1, 0, 0},
-        {"a", NULL, "h", "x|y", AB_CHOICE, 0, 0.5, 0, 0}, {"a", NULL, "h", "x|y", AB_CHOICE, 0, NAN, 0, 0}, {"a", NULL, "h", NULL, AB_FLAG, 0, 2, 0, 0},
-        {"a", "1", "h", NULL, AB_REAL, 0, NAN, 0, 0}, {"a", "1", "h", NULL, AB_REAL, 0, 0, 1, 2}, {"a", "1", "h", NULL, AB_REAL, AB_MIN_OPEN, 1, 1, 2},
-        {"a", "1", "h", NULL, AB_REAL, AB_MAX_OPEN, 2, 1, 2}, {"a", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, NAN, 1},
-        {"a", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 2, 1}, {"a", "1", "h", NULL, AB_INTEGER, 0, 1.5, 1, 2},
+        {NULL, "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a b", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a\nb", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a", NULL, "h", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a", "1", NULL, NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a", "1", "h\x1b[31m", NULL, AB_REAL, AB_REQUIRED, 0, 0, 1},
+        {"a", "1", "h", NULL, 0, AB_REQUIRED, 0, 0, 1},
+        {"a", "1", "h", NULL, AB_REAL, 1u << 31, 0, 0, 1},
+        {"a", "1", "h", NULL, AB_REAL, AB_OR_DIRECTION, 0, 0, 1},
+        {"a", "1", "h", NULL, AB_REAL, AB_COLUMNS_2, 0, 0, 1},
+        {"a", "1", "h", "x|y", AB_REAL, 0, 0, 0, 1},
+        {"a", NULL, "h", NULL, AB_CHOICE, 0, 0, 0, 0},
+        {"a", NULL, "h", "", AB_CHOICE, 0, 0, 0, 0},
+        {"a", NULL, "h", "x||y", AB_CHOICE, 0, 0, 0, 0},
+        {"a", NULL, "h", "x|", AB_CHOICE, 0, 0, 0, 0},
+        {"a", NULL, "h", "x|y", AB_CHOICE, 0, 2, 0, 0},
+        {"a", NULL, "h", "x|y", AB_CHOICE, 0, -1, 0, 0},
+        {"a", NULL, "h", "x|y", AB_CHOICE, 0, 0.5, 0, 0},
+        {"a", NULL, "h", "x|y", AB_CHOICE, 0, NAN, 0, 0},
+        {"a", NULL, "h", NULL, AB_FLAG, 0, 2, 0, 0},
+        {"a", "1", "h", NULL, AB_REAL, 0, NAN, 0, 0},
+        {"a", "1", "h", NULL, AB_REAL, 0, 0, 1, 2},
+        {"a", "1", "h", NULL, AB_REAL, AB_MIN_OPEN, 1, 1, 2},
+        {"a", "1", "h", NULL, AB_REAL, AB_MAX_OPEN, 2, 1, 2},
+        {"a", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, NAN, 1},
+        {"a", "1", "h", NULL, AB_REAL, AB_REQUIRED, 0, 2, 1},
+        {"a", "1", "h", NULL, AB_INTEGER, 0, 1.5, 1, 2},
     };
     static const ab_state wrong_states[] = {
-        {NULL, "1", "h", AB_SCALAR, AB_COPY, 0}, {"a", NULL, "h", AB_SCALAR, AB_COPY, 0}, {"a", "1", NULL, AB_SCALAR, AB_COPY, 0},
-        {"a", "1", "h", 0, AB_COPY, 0}, {"a", "1", "h", AB_FULL + 1, AB_COPY, 0}, {"a", "1", "h", AB_SCALAR, 0, 0},
+        {NULL, "1", "h", AB_SCALAR, AB_COPY, 0},   {"a", NULL, "h", AB_SCALAR, AB_COPY, 0},
+        {"a", "1", NULL, AB_SCALAR, AB_COPY, 0},   {"a", "1", "h", 0, AB_COPY, 0},
+        {"a", "1", "h", AB_FULL + 1, AB_COPY, 0},  {"a", "1", "h", AB_SCALAR, 0, 0},
         {"a", "1", "h", AB_SCALAR, AB_SUM + 1, 0}, {"a", "1", "h", AB_SCALAR, AB_SUM, NAN},
     };
     static const ab_param right[] = {
-        {"E", "Pa", "h", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY}, {"a", "1", "h", NULL, AB_REAL, 0, 2, 1, 2},
-        {"any", "1", "h", NULL, AB_REAL, AB_MIN_OPEN, 0, 0, 0}, {"way", NULL, "h", "x|y", AB_CHOICE, AB_OR_DIRECTION, 1, 0, 0},
-        {"on", NULL, "h", NULL, AB_FLAG, 0, 1, 0, 0}, {"count", "1", "h", NULL, AB_INTEGER, 0, 3, 1, 9}, {"curve", "Pa", "h", NULL, AB_TABLE, AB_COLUMNS_2, 0, 0, 0},
+        {"E", "Pa", "h", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
+        {"a", "1", "h", NULL, AB_REAL, 0, 2, 1, 2},
+        {"any", "1", "h", NULL, AB_REAL, AB_MIN_OPEN, 0, 0, 0},
+        {"way", NULL, "h", "x|y", AB_CHOICE, AB_OR_DIRECTION, 1, 0, 0},
+        {"on", NULL, "h", NULL, AB_FLAG, 0, 1, 0, 0},
+        {"count", "1", "h", NULL, AB_INTEGER, 0, 3, 1, 9},
+        {"curve", "Pa", "h", NULL, AB_TABLE, AB_COLUMNS_2, 0, 0, 0},
     };
     ab_class_copy copy;
     ab_refusal refusal;
