@@ -50,14 +50,15 @@ enum { command_count = sizeof commands / sizeof *commands - 1 };
 /* The command of that name, or NULL with the reason printed. */
 static const ab_command *find_command(const char *name) {
     const char *names[command_count];
+    size_t count = 0;
     for (size_t i = 0; i < command_count; i++) {
-        names[i] = commands[i].run ? commands[i].name : NULL;
+        if (commands[i].run) names[count++] = commands[i].name;
         if (strcmp(commands[i].name, name) != 0) continue;
         if (commands[i].run) return &commands[i];
         fprintf(stderr, "abut: error: '%s' is not in this version yet; `abut help` lists what is\n", name);
         return NULL;
     }
-    const char *near = ab_suggest(name, names, command_count);
+    const char *near = ab_suggest(name, names, count);
     if (near)
         fprintf(stderr, "abut: error: unknown command '%s'; did you mean '%s'?\n", name, near);
     else

@@ -20,7 +20,8 @@ typedef struct option_text {
 
 static const option_text option_texts[] = {
     {AB_OPTION_OUTPUT, "output", 'o', "DIR", "folder of the results (default: results/NAME, NAME being the scene's folder or file)"},
-    {AB_OPTION_THREADS, "threads", 'j', "N", "threads to run on (default: all cores); the results do not depend on it"},
+    {AB_OPTION_THREADS, "threads", 'j', "N",
+     "threads to run on (default: all cores, fewer for a small scene); results do not depend on it"},
     {AB_OPTION_SET, "set", 0, "PATH=VALUE", "put VALUE in the scene at PATH, such as contact[0].friction=0.3; may be repeated"},
     {AB_OPTION_PLUGIN_PATH, "plugin-path", 0, "FOLDERS", "look for plugins here first; folders separated by ':'"},
     {AB_OPTION_QUIET, "quiet", 'q', NULL, "no progress and no closing table"},
@@ -102,7 +103,8 @@ static int read_threads(const ab_command *command, const char *text, int *thread
     errno = 0;
     const long value = strtol(text, &end, 10);
     if (errno || end == text || *end || value < 1 || value > most_threads)
-        return wrong(command, "-j wants a number of threads from 1 to 4096, not '%s'", text, "leave it out to use all cores");
+        return wrong(command, "-j wants a number of threads from 1 to 4096, not '%s'", text,
+                     "leave it out to use as many as the scene is worth");
     *threads = (int)value;
     return AB_OK;
 }

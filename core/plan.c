@@ -32,10 +32,11 @@ static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
         const ab_contact_spec *contact = &scene->contacts[c / 2];
         const ab_loaded_class *loaded = c % 2 ? contact->responder : contact->finder;
         bool known = !loaded;
-        for (size_t k = 0; k < c; k++) known = known || loaded == (k % 2 ? scene->contacts[k / 2].responder : scene->contacts[k / 2].finder);
+        for (size_t k = 0; k < c; k++)
+            known = known || loaded == (k % 2 ? scene->contacts[k / 2].responder : scene->contacts[k / 2].finder);
         if (known) continue;
-        snprintf(why, sizeof why, "%s of '%s' and '%s'", c % 2 ? "response to contact" : "finds the contact", scene->bodies[contact->body[0]].name,
-                 scene->bodies[contact->body[1]].name);
+        snprintf(why, sizeof why, "%s of '%s' and '%s'", c % 2 ? "response to contact" : "finds the contact",
+                 scene->bodies[contact->body[0]].name, scene->bodies[contact->body[1]].name);
         tell(text, number++, loaded->class_.name, why, loaded);
     }
 }
@@ -46,7 +47,9 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
     size_t number = 0;
     char what[256];
     if (!scene->contact_count)
-        tell(text, number++, "contact", scene->body_count < 2 ? "there is one body: no contact pass, no contact plugin" : "no contact is asked for: no contact pass, no contact plugin",
+        tell(text, number++, "contact",
+             scene->body_count < 2 ? "there is one body: no contact pass, no contact plugin"
+                                   : "no contact is asked for: no contact pass, no contact plugin",
              NULL);
     tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
     if (scene->space == AB_SPACE_PLANE_STRAIN)
@@ -125,7 +128,7 @@ static void add_words(ab_text *text, const char *before, const char *words) {
 static void json_plugin(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
     add_string(text, number ? ",\n    {\"name\": " : "\n    {\"name\": ", name);
     add_string(text, ", \"kind\": ", kind_name(loaded->class_.kind));
-    add_string(text, ", \"why\": ", why);
+    add_string(text, ", \"for\": ", why);
     add_string(text, ", \"file\": ", loaded->path ? loaded->path : "");
     add_string(text, ", \"version\": ", loaded->plugin_version ? loaded->plugin_version : "");
     ab_text_add(text, "}");
@@ -133,23 +136,24 @@ static void json_plugin(ab_text *text, size_t number, const char *name, const ch
 
 static void json_left_out(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
     (void)loaded;
-    add_string(text, number ? ",\n    {\"name\": " : "\n    {\"name\": ", name);
-    add_string(text, ", \"why\": ", why);
-    ab_text_add(text, "}");
+    char line[512];
+    snprintf(line, sizeof line, "%s: %s", name, why);
+    add_string(text, number ? ",\n    " : "\n    ", line);
 }
 
 void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_options *options, double seconds_per_step) {
     const ab_scene *scene = schedule->scene;
     const ab_plan_body sum = totals_of(schedule);
-    ab_text_add(text, "{\n  \"bodies\": [");
+    add_string(text, "{\n  \"scene\": ", scene->path);
+    ab_text_add(text, ",\n  \"bodies\": [");
     for (size_t b = 0; b < schedule->body_count; b++) {
         const ab_domain *domain = schedule->domains[b];
         ab_plan_body body;
         domain->ops->plan(schedule->domains[b], &body);
         add_string(text, b ? ",\n    {\"name\": " : "\n    {\"name\": ", scene->bodies[b].name);
         add_string(text, ", \"method\": ", domain->ops->method);
-        ab_text_add(text, ", \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"bytes_per_point\": %zu", body.points, body.cells, body.tiles,
-                    body.bytes, body.bytes_per_point);
+        ab_text_add(text, ", \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"bytes_per_point\": %zu", body.points,
+                    body.cells, body.tiles, body.bytes, body.bytes_per_point);
         add_words(text, ", \"fields\": ", body.fields);
         add_words(text, ", \"passes\": ", body.passes);
         ab_text_add(text, "}");
@@ -163,17 +167,17 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
         add_string(text, ", \"response\": ", contact->responder ? contact->responder->class_.name : contact->finder->class_.name);
         ab_text_add(text, ", \"passes\": [\"find\", \"respond\"]}");
     }
-    ab_text_add(text, "],\n  \"plugins\": [");
+    ab_text_add(text, "],\n  \"contact_passes\": %zu,\n  \"boundary_passes\": 0,\n  \"plugins\": [", scene->contact_count);
     each_plugin(scene, json_plugin, text);
     ab_text_add(text, "],\n  \"not_paid_for\": [");
     each_left_out(schedule, json_left_out, text);
-    ab_text_add(text, "],\n  \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"threads\": %d", sum.points, sum.cells, sum.tiles, sum.bytes,
-                options->threads);
+    ab_text_add(text, "],\n  \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"threads\": %d", sum.points, sum.cells,
+                sum.tiles, sum.bytes, options->threads);
     add_number(text, ",\n  \"dt\": ", schedule->dt);
-    add_number(text, ", \"dt_critical\": ", schedule->critical_dt);
-    add_string(text, ", \"dt_limit\": ", schedule->limit);
+    add_number(text, ", \"critical_dt\": ", schedule->critical_dt);
+    add_string(text, ", \"limit\": ", schedule->limit);
     add_number(text, ",\n  \"steps\": ", steps_of(schedule));
-    add_number(text, ", \"seconds\": ", seconds_per_step > 0.0 ? seconds_per_step * steps_of(schedule) : NAN);
+    add_number(text, ", \"estimated_seconds\": ", seconds_per_step > 0.0 ? seconds_per_step * steps_of(schedule) : NAN);
     ab_text_add(text, "\n}");
 }
 
@@ -181,7 +185,8 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
 
 static void text_plugin(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
     (void)number;
-    ab_text_add(text, "  %-9s %-18s %s\n", kind_name(loaded->class_.kind), name, why);
+    ab_text_add(text, "  %s %s %s: %s\n    %s\n", kind_name(loaded->class_.kind), name,
+                loaded->plugin_version ? loaded->plugin_version : "", why, loaded->path ? loaded->path : "");
 }
 
 static void text_left_out(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
@@ -218,8 +223,8 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
         const ab_domain *domain = schedule->domains[b];
         ab_plan_body body;
         domain->ops->plan(schedule->domains[b], &body);
-        ab_text_add(text, "  %s: %s, %zu points in %zu cells (%zu tiles), %zu bytes a point, ", scene->bodies[b].name, domain->ops->method, body.points, body.cells,
-                    body.tiles, body.bytes_per_point);
+        ab_text_add(text, "  %s: %s, %zu points in %zu cells (%zu tiles), %zu bytes a point, ", scene->bodies[b].name, domain->ops->method,
+                    body.points, body.cells, body.tiles, body.bytes_per_point);
         add_bytes(text, body.bytes);
         ab_text_add(text, " in all\n    fields: %s\n    each step: %s\n", body.fields, body.passes);
     }
@@ -236,8 +241,8 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
     each_left_out(schedule, text_left_out, text);
     ab_text_add(text, "\nCost\n  %zu points, ", sum.points);
     add_bytes(text, sum.bytes);
-    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n  %.0f steps", options->threads, options->threads == 1 ? "" : "s", schedule->dt,
-                schedule->critical_dt, schedule->limit, steps_of(schedule));
+    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n  %.0f steps", options->threads,
+                options->threads == 1 ? "" : "s", schedule->dt, schedule->critical_dt, schedule->limit, steps_of(schedule));
     if (seconds_per_step > 0.0) {
         ab_text_add(text, ", about ");
         add_seconds(text, seconds_per_step * steps_of(schedule));
