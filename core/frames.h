@@ -4,8 +4,9 @@
  *   /frame_000000            attributes time, time_unit, step
  *     /<body>                one group a body: position, id, body and the fields asked for
  *     /all                   the same rows of every body one after the other, as virtual datasets: no second copy of the data
- * Every dataset has the attributes "unit" and "components". Vectors have three components, symmetric tensors six in the order of
- * XDMF's Tensor6 (xx xy xz yy yz zz), so that ParaView shows them as what they are. */
+ * Every dataset has the attributes "unit" and "components". Vectors have three components, symmetric tensors six in the order
+ * in which ParaView names and uses them (xx yy zz xy yz xz). That is why the XDMF calls them a Matrix: its own Tensor6 means another order, which
+ * ParaView's reader passes on as it is, and then calls xy YY. */
 #ifndef AB_FRAMES_H
 #define AB_FRAMES_H
 

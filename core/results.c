@@ -136,6 +136,7 @@ ab_status ab_results_close(ab_results *results, const ab_state_view *view, const
     const ab_status parts[] = {
         sample(results, view, true, report),
         ab_history_row(results->history, view, results->monitors, report),
+        frame(results, view, report), /* the end is shown, due or not */
         ab_history_close(results->history, report),
         results->frames != NULL ? ab_frames_finish(results->frames, report) : AB_OK,
         ab_summary_write(results, view, facts, report),

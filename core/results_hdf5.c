@@ -56,7 +56,7 @@ static ab_status column_add(ab_frames *frames, const char *name, ab_report *repo
         const bool vector = field->components == 2 || field->components == 3;
         const bool stress = field->component_names != NULL && strncmp(field->component_names, "xx yy zz", 8) == 0;
         new->written = vector ? 3 : stress ? 6 : field->components;
-        new->names = vector ? "x y z" : stress ? "xx xy xz yy yz zz" : field->component_names != NULL ? field->component_names : "value";
+        new->names = vector ? "x y z" : stress ? "xx yy zz xy yz xz" : field->component_names != NULL ? field->component_names : "value";
     }
     if (new->name != NULL &&new->given > MOST_COMPONENTS)
         return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components, more than %d", name, new->given,
@@ -163,16 +163,10 @@ static void spread(const column *c, const double *in, size_t points, double *out
             out[3 * p + 1] = in[2 * p + 1];
             out[3 * p + 2] = 0;
         }
-    } else { /* xx yy zz xy -> xx xy xz yy yz zz */
+    } else { /* xx yy zz xy, and nothing out of the plane */
         for (size_t p = 0; p < points; p++) {
-            const double full[6] = {in[4 * p], in[4 * p + 3], 0, in[4 * p + 1], 0, in[4 * p + 2]};
-            memcpy(out + 6 * p, full, sizeof full);
-        }
-    }
-    if (c->given == 6 && c->written == 6) { /* xx yy zz xy yz zx */
-        for (size_t p = 0; p < points; p++) {
-            const double *s = in + 6 * p, full[6] = {s[0], s[3], s[5], s[1], s[4], s[2]};
-            memcpy(out + 6 * p, full, sizeof full);
+            memcpy(out + 6 * p, in + 4 * p, 4 * sizeof *out);
+            out[6 * p + 4] = out[6 * p + 5] = 0;
         }
     }
 }

@@ -78,7 +78,6 @@ ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const 
         ab_text_add(text, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", fields[f].name,
                     n == 1   ? "Scalar"
                     : n == 3 ? "Vector"
-                    : n == 6 ? "Tensor6"
                     : n == 9 ? "Tensor"
                              : "Matrix");
         add_data(xdmf, fields[f].integer ? "Int" : "Float", 8, points, n > 1 ? n : 0, frame, group, fields[f].name);

@@ -114,7 +114,7 @@ static void check_frames(int frames) {
         assert_float_equal(values[3 * 2 + 2], 0, 0);
         snprintf(name, sizeof name, "/frame_%06d/block/stress", k);
         read_numbers(file, name, values, 24);
-        static const double order[6] = {20, 8, 0, 40, 0, 60}; /* xx xy xz yy yz zz of point 1 */
+        static const double order[6] = {20, 40, 60, 8, 0, 0}; /* xx yy zz xy yz xz of point 1 */
         for (int c = 0; c < 6; c++) assert_float_equal(values[6 + c], order[c], 0);
         snprintf(name, sizeof name, "/frame_%06d/all/position", k);
         read_numbers(file, name, values, 21);
@@ -163,6 +163,7 @@ static void test_a_whole_run(void **state) {
     check_frames(3);
     assert_false(exists("frames")); /* one file, whole in itself */
     assert_true(exists("results_block.xdmf"));
+    assert_false(exists("results.h5.part"));
 
     char *history = text_of("history.csv");
     assert_memory_equal(
@@ -312,6 +313,7 @@ static void test_no_room_to_gather_keeps_the_links(void **state) {
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
     assert_int_equal(run_steps(results, run, 0, 10, report), AB_OK);
+    assert_int_equal(ab_results_frame(results, &run->view, report), AB_OK);
     limit_files(100000); /* a frame fits, three together with the room set aside do not */
     assert_int_equal(ab_results_close(results, &run->view, &facts, &missed, report), AB_OK);
     limit_files(RLIM_INFINITY);
@@ -327,6 +329,23 @@ static void test_an_earlier_run_is_replaced(void **state) {
     test_a_full_disk_takes_nothing_back(state); /* leaves frames/ behind */
     test_a_whole_run(state);
     test_a_whole_run(state);
+}
+
+static void test_without_a_rhythm_the_first_and_the_last_frame(void **state) {
+    (void)state;
+    fake_run *run = fake_create(4, 3);
+    ab_report *report = ab_report_create();
+    ab_results *results = NULL;
+    size_t missed = 9;
+    ask_for_everything(run);
+    run->scene.output_every = 0;
+    assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
+    assert_int_equal(run_steps(results, run, 0, 5, report), AB_OK);
+    assert_int_equal(ab_results_close(results, &run->view, &facts, &missed, report), AB_OK);
+    ab_results_destroy(results);
+    check_frames(2); /* the last at t = 0.5, as the second of a whole run */
+    ab_report_destroy(report);
+    free(run);
 }
 
 static void test_progress_fits_the_terminal(void **state) {
@@ -355,6 +374,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_a_full_disk_takes_nothing_back, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_no_room_to_gather_keeps_the_links, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_an_earlier_run_is_replaced, fresh_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_without_a_rhythm_the_first_and_the_last_frame, fresh_folder, remove_folder),
         cmocka_unit_test(test_progress_fits_the_terminal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

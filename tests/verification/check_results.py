@@ -17,7 +17,7 @@ import h5py
 import meshio
 import numpy
 
-COMPONENTS = {"position": "x y z", "velocity": "x y z", "displacement": "x y z", "stress": "xx xy xz yy yz zz"}
+COMPONENTS = {"position": "x y z", "velocity": "x y z", "displacement": "x y z", "stress": "xx yy zz xy yz xz"}
 problems = []
 
 
