@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "core/memory.h"
+#include "core/plan.h"
 #include "core/progress.h"
 
 static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
@@ -230,11 +231,13 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     sigaction(SIGXFSZ, &ignore, &old_size);
     ab_progress progress;
     ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points);
+    ab_text plan_json = {0};
+    ab_plan_add_json(&plan_json, s, options, 0.0);
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     status = advance(s, results, &progress, report);
     ab_progress_end(&progress);
     ab_run_facts facts = {.wall_seconds = seconds(CLOCK_MONOTONIC) - wall, .cpu_seconds = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu, .steps = s->number, .threads = options->threads,
-                          .points = s->points, .version = ABUT_VERSION, .outcome = "done", .plan_json = options->plan_json};
+                          .points = s->points, .version = ABUT_VERSION, .outcome = "done", .plan_json = plan_json.failed ? NULL : plan_json.bytes};
     char outcome[256];
     if (status != AB_OK) {
         snprintf(outcome, sizeof outcome, "failed: %s", ab_report_text(report, ab_report_errors(report) ? 0 : 1));
@@ -267,6 +270,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status == AB_OK) status = closed != AB_OK ? closed : written;
     if (status == AB_OK && missed && options->strict) status = AB_MISSED;
     ab_results_destroy(results);
+    ab_text_clear(&plan_json);
     ab_schedule_destroy(s);
     sigaction(SIGINT, &old_int, NULL);
     sigaction(SIGTERM, &old_term, NULL);

@@ -16,7 +16,6 @@ typedef struct ab_run_options {
     const ab_method *methods;
     size_t method_count;
     ab_interaction_maker interact; /* for scenes with contacts */
-    const char *plan_json;         /* to be kept in the summary; may be NULL */
 } ab_run_options;
 
 typedef struct ab_schedule { /* a scene on its way through time */
