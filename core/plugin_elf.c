@@ -79,6 +79,11 @@ static bool read_header(image *elf, ab_refusal *refusal) {
         return ab_refuse(refusal, "is damaged: its program headers make no sense");
     if (!read_file(elf, header->e_phoff, elf->segment, header->e_phnum * sizeof *elf->segment))
         return ab_refuse(refusal, "is damaged: it ends inside its program headers");
+    const uint64_t sections = (uint64_t)header->e_shnum * header->e_shentsize; /* mostly the last thing in the file; may be stripped off */
+    if (header->e_shoff != 0 && (header->e_shoff > elf->size || sections > elf->size - header->e_shoff))
+        return ab_refuse(refusal,
+                         "is damaged: it is %llu bytes long and its section headers should stand at byte %llu; copy or build it again",
+                         (unsigned long long)elf->size, (unsigned long long)header->e_shoff);
     for (size_t s = 0; s < header->e_phnum; s++) { /* the loader maps what is missing and dies on the first touch */
         const ElfW(Phdr) *segment = &elf->segment[s];
         if (segment->p_type == PT_LOAD && (segment->p_offset > elf->size || segment->p_filesz > elf->size - segment->p_offset))
