@@ -16,7 +16,7 @@ static const char *type_name(const ab_key *key) {
         case AB_KEY_POINT: return "[x, y]";
         case AB_KEY_FORMULA: return "formula of t";
         case AB_KEY_VECTOR: return key->variables == AB_VARIABLE_T ? "[x, y], formulas of t" : key->variables == AB_VARIABLES_XY ? "[x, y], formulas of x, y" : "[x, y]";
-        default: return "see help";
+        default: return "mapping or list";
     }
 }
 
@@ -83,7 +83,7 @@ static void write_words_table(FILE *stream, const char *title, const char *help,
 static const char opening[] =
     "# Scene files\n"
     "\n"
-    "This page is written by the program from the tables that check a scene; `tests/unit/test_scene_reference.c` holds that it is up to date.\n"
+    "This page is written by `abut help scene` from the tables that check a scene; a test holds that it is up to date.\n"
     "A scene is one YAML file. `abut check SCENE` says everything that is wrong with it, each with its line and column, and exits 2.\n"
     "\n"
     "```yaml\n"
