@@ -1,14 +1,41 @@
 /* fill.c: the door of the fill: checks the request, hands each shape to its filler, keeps the growing lists; and answers `where`. */
 #define _POSIX_C_SOURCE 200809L
-#include "mpm/fill_outline.h"
+#include "mpm/fill_union.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static ab_status fill_polygon(ab_filler *filler, const ab_shape_spec *shape)
-{
+ab_status ab_fill_check(const ab_filler *filler, const ab_shape_spec *shape) {
+    const double radius = shape->radius, inner = shape->kind == AB_SHAPE_RING ? shape->inner : 0;
+    switch (shape->kind) {
+    case AB_SHAPE_BOX:
+        for (int k = 0; k < 2; k++)
+            if (!(shape->high[k] > shape->low[k]) || !isfinite(shape->high[k] - shape->low[k]))
+                return ab_report_error(
+                    filler->report, shape->mark,
+                    "body '%s': its box goes from %g to %g in %c; its first corner must be below its second in both directions",
+                    filler->body, shape->low[k], shape->high[k], "xy"[k]);
+        return AB_OK;
+    case AB_SHAPE_DISC:
+    case AB_SHAPE_RING:
+        if (!(radius > 0) || !isfinite(radius) || !isfinite(shape->center[0]) || !isfinite(shape->center[1]))
+            return ab_report_error(filler->report, shape->mark, "body '%s': radius %g about (%g, %g); the radius must be positive",
+                                   filler->body, radius, shape->center[0], shape->center[1]);
+        if (!(inner >= 0) || !(inner < radius))
+            return ab_report_error(filler->report, shape->mark,
+                                   "body '%s': inner radius %g of a ring of radius %g; it must be less than the radius and not negative",
+                                   filler->body, inner, radius);
+        return AB_OK;
+    case AB_SHAPE_POLYGON:
+    case AB_SHAPE_UNION: return AB_OK;
+    }
+    return ab_report_error(filler->report, shape->mark,
+                           "body '%s': a shape of this kind cannot be filled; use box, disc, ring, polygon or union", filler->body);
+}
+
+static ab_status fill_polygon(ab_filler *filler, const ab_shape_spec *shape) {
     ab_outline outline;
     AB_TRY(ab_outline_create(shape, &outline, filler->body, filler->report));
     const ab_status status = ab_fill_outline(filler, shape->mark, &outline);
@@ -16,22 +43,20 @@ static ab_status fill_polygon(ab_filler *filler, const ab_shape_spec *shape)
     return status;
 }
 
-static ab_status fill_shape(ab_filler *filler, const ab_shape_spec *shape)
-{
+ab_status ab_fill_shape(ab_filler *filler, const ab_shape_spec *shape) {
+    AB_TRY(ab_fill_check(filler, shape));
     switch (shape->kind) {
     case AB_SHAPE_BOX: return ab_fill_box(filler, shape);
     case AB_SHAPE_DISC:
     case AB_SHAPE_RING: return ab_fill_round(filler, shape);
     case AB_SHAPE_POLYGON: return fill_polygon(filler, shape);
-    case AB_SHAPE_UNION: break;
+    case AB_SHAPE_UNION: return ab_fill_union(filler, shape);
     }
-    return ab_report_error(filler->report, shape->mark, "body '%s': a shape of this kind cannot be filled; use box, disc, ring, polygon or union",
-                           filler->body);
+    return AB_BAD_INPUT;
 }
 
 ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
-                         ab_fill **fill, ab_report *report)
-{
+                         ab_fill **fill, ab_report *report) {
     (void)origin; /* the lattice follows the outline, wherever the grid stands */
     *fill = NULL;
     if (per_cell < 1)
@@ -45,7 +70,7 @@ ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_
         filler.fill->low[k] = INFINITY;
         filler.fill->high[k] = -INFINITY;
     }
-    const ab_status status = fill_shape(&filler, shape);
+    const ab_status status = ab_fill_shape(&filler, shape);
     if (status != AB_OK) {
         ab_fill_destroy(filler.fill);
         return status;
@@ -54,8 +79,7 @@ ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_
     return AB_OK;
 }
 
-void ab_fill_destroy(ab_fill *fill)
-{
+void ab_fill_destroy(ab_fill *fill) {
     if (!fill) return;
     free(fill->x);
     free(fill->y);
@@ -66,8 +90,7 @@ void ab_fill_destroy(ab_fill *fill)
 }
 
 /* Which of left, right, bottom, top a normal belongs to: quarters of the circle, each closed at its clockwise end. */
-static int side_of(const double normal[2])
-{
+static int side_of(const double normal[2]) {
     const double x = normal[0], y = normal[1];
     if (x > 0 && y >= -x && y < x) return AB_RIGHT;
     if (y > 0 && x <= y && x > -y) return AB_TOP;
@@ -75,8 +98,7 @@ static int side_of(const double normal[2])
     return AB_BOTTOM;
 }
 
-bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_surface *surface)
-{
+bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_surface *surface) {
     if (where->all) return true;
     if (where->side < 0 && !where->has[0] && !where->has[1]) return false;
     if (where->side >= 0 && side_of(surface->normal) != where->side) return false;
@@ -92,27 +114,30 @@ bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_surface
 
 /* ---- the lists -------------------------------------------------------------------------------------------------------- */
 
-static ab_status grow(void **array, size_t count, size_t size, const ab_filler *filler)
-{
+static ab_status grow(void **array, size_t count, size_t size, const ab_filler *filler) {
     void *bigger = realloc(*array, count * size);
     if (!bigger)
-        return ab_report_failure(filler->report, "body '%s': no memory for %zu points; use a larger cell or fewer per_cell", filler->body, count);
+        return ab_report_failure(filler->report, "body '%s': no memory for %zu points; use a larger cell or fewer per_cell", filler->body,
+                                 count);
     *array = bigger;
     return AB_OK;
 }
 
-ab_status ab_filler_reserve(ab_filler *filler, ab_mark mark, double points, double pieces)
-{
+ab_status ab_filler_reserve(ab_filler *filler, ab_mark mark, double points, double pieces) {
     ab_fill *fill = filler->fill;
     const double count = (double)fill->count + points, surface_count = (double)fill->surface_count + pieces;
     const double most = 2147483648.0; /* points and dofs are numbered in 32 bits */
     if (!(count <= most) || !(surface_count <= most))
-        return ab_report_error(filler->report, mark, "body '%s' would have %.3g points (%d in each cell of %g m), more than the %.0f that can be numbered; use a larger cell or fewer per_cell",
+        return ab_report_error(filler->report, mark,
+                               "body '%s' would have %.3g points (%d in each cell of %g m), more than the %.0f that can be numbered; use a "
+                               "larger cell or fewer per_cell",
                                filler->body, count, filler->per_cell, filler->cell, most);
     const double bytes = count * 6 * sizeof(double) + surface_count * (double)sizeof(ab_surface);
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (memory > 0 && bytes > memory)
-        return ab_report_error(filler->report, mark, "body '%s' would have %.3g points (%d in each cell of %g m): %.3g GB, and the machine has %.3g GB; use a larger cell or fewer per_cell",
+        return ab_report_error(filler->report, mark,
+                               "body '%s' would have %.3g points (%d in each cell of %g m): %.3g GB, and the machine has %.3g GB; use a "
+                               "larger cell or fewer per_cell",
                                filler->body, count, filler->per_cell, filler->cell, bytes * 1e-9, memory * 1e-9);
     if (count > (double)filler->capacity) {
         const size_t capacity = (size_t)fmin(most, fmax(count, 1.5 * (double)filler->capacity));
@@ -130,8 +155,7 @@ ab_status ab_filler_reserve(ab_filler *filler, ab_mark mark, double points, doub
     return AB_OK;
 }
 
-uint32_t ab_filler_point(ab_filler *filler, double x, double y, double volume, double xx, double yy, double xy)
-{
+uint32_t ab_filler_point(ab_filler *filler, double x, double y, double volume, double xx, double yy, double xy) {
     ab_fill *fill = filler->fill;
     const size_t p = fill->count++;
     fill->x[p] = x;
@@ -143,14 +167,12 @@ uint32_t ab_filler_point(ab_filler *filler, double x, double y, double volume, d
     return (uint32_t)p;
 }
 
-void ab_filler_piece(ab_filler *filler, uint32_t point, double x, double y, double normal_x, double normal_y, double length)
-{
+void ab_filler_piece(ab_filler *filler, uint32_t point, double x, double y, double normal_x, double normal_y, double length) {
     filler->fill->surface[filler->fill->surface_count++] =
         (ab_surface){.point = point, .position = {x, y}, .normal = {normal_x, normal_y}, .length = length};
 }
 
-void ab_filler_bound(ab_filler *filler, double x, double y)
-{
+void ab_filler_bound(ab_filler *filler, double x, double y) {
     double *low = filler->fill->low, *high = filler->fill->high;
     low[0] = fmin(low[0], x);
     low[1] = fmin(low[1], y);
@@ -158,7 +180,4 @@ void ab_filler_bound(ab_filler *filler, double x, double y)
     high[1] = fmax(high[1], y);
 }
 
-double ab_fill_parts(double length, double size)
-{
-    return fmax(1.0, floor(length / size + 0.5 + 1e-9));
-}
+double ab_fill_parts(double length, double size) { return fmax(1.0, floor(length / size + 0.5 + 1e-9)); }

@@ -9,23 +9,24 @@
 
 typedef struct ab_surface { /* a piece of the outline and the point under it */
     uint32_t point;
-    double position[2];     /* m, middle of the piece, on the outline */
-    double normal[2];       /* out of the body */
-    double length;          /* m */
+    double position[2]; /* m, middle of the piece, on the outline */
+    double normal[2];   /* out of the body */
+    double length;      /* m */
 } ab_surface;
 
 typedef struct ab_fill {
     size_t count;
-    double *x, *y;          /* m */
-    double *volume;         /* m2 (per m of thickness) */
-    double *extent;         /* m2: (xx, yy, xy) per point, extent[3*i + c]; half size in direction n is sqrt(n.A.n) */
+    double *x, *y;  /* m */
+    double *volume; /* m2 (per m of thickness) */
+    double *extent; /* m2: (xx, yy, xy) per point, extent[3*i + c]; half size in direction n is sqrt(n.A.n) */
     ab_surface *surface;
     size_t surface_count;
     double low[2], high[2]; /* bounding box of the outline */
 } ab_fill;
 
 /* cell: m, of the background grid; per_cell: points wanted per cell of that size; any number >= 1. */
-ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body, ab_fill **fill, ab_report *report);
+ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
+                         ab_fill **fill, ab_report *report);
 void ab_fill_destroy(ab_fill *fill);
 
 /* True where the piece of outline is in the set. Sides: pieces whose normal is within 45 degrees of the side's (closed at one end, so that a

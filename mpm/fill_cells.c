@@ -11,8 +11,7 @@
 
 #include "mpm/fill_outline.h"
 
-void ab_cells_clear(ab_cells *cells)
-{
+void ab_cells_clear(ab_cells *cells) {
     free(cells->lines[0].line);
     free(cells->lines[1].line);
     free(cells->cell);
@@ -26,8 +25,7 @@ void ab_cells_clear(ab_cells *cells)
 /* ---- edges to pieces ---------------------------------------------------------------------------------------------------- */
 
 /* Moves a vertex onto a line that it misses by rounding alone. */
-static void nudge(double u[2], const ab_lines lines[2])
-{
+static void nudge(double u[2], const ab_lines lines[2]) {
     for (int k = 0; k < 2; k++) {
         const double *line = lines[k].line;
         const uint32_t cell = ab_lines_find(&lines[k], u[k]);
@@ -38,15 +36,16 @@ static void nudge(double u[2], const ab_lines lines[2])
 }
 
 /* Walks an edge from line to line; counts the pieces, and writes them where `cut` is given. */
-static size_t walk(const ab_edge *edge, uint32_t number, const ab_lines lines[2], ab_cut *cut)
-{
+static size_t walk(const ab_edge *edge, uint32_t number, const ab_lines lines[2], ab_cut *cut) {
     uint32_t next[2] = {0, 0}; /* line to cross next */
     double delta[2];
     for (int k = 0; k < 2; k++) {
         delta[k] = edge->to[k] - edge->from[k];
         next[k] = ab_lines_find(&lines[k], edge->from[k]);
-        if (delta[k] > 0) next[k] += edge->from[k] >= lines[k].line[next[k]];
-        else if (delta[k] < 0 && edge->from[k] <= lines[k].line[next[k]]) next[k] -= 1; /* wraps below line 0: nothing left to cross */
+        if (delta[k] > 0)
+            next[k] += edge->from[k] >= lines[k].line[next[k]];
+        else if (delta[k] < 0 && edge->from[k] <= lines[k].line[next[k]])
+            next[k] -= 1; /* wraps below line 0: nothing left to cross */
     }
     size_t count = 0;
     double at[2] = {edge->from[0], edge->from[1]};
@@ -77,8 +76,7 @@ static size_t walk(const ab_edge *edge, uint32_t number, const ab_lines lines[2]
 }
 
 /* The cell a piece belongs to: the one on its inner side. */
-static void own_cell(const ab_cut *cut, const ab_lines lines[2], uint32_t *i, uint32_t *j)
-{
+static void own_cell(const ab_cut *cut, const ab_lines lines[2], uint32_t *i, uint32_t *j) {
     const double du = cut->b[0] - cut->a[0], dv = cut->b[1] - cut->a[1], length = hypot(du, dv);
     const double inwards = 1e-9 * fmin((lines[0].line[lines[0].count] - lines[0].line[0]) / lines[0].count,
                                        (lines[1].line[lines[1].count] - lines[1].line[0]) / lines[1].count);
@@ -88,15 +86,13 @@ static void own_cell(const ab_cut *cut, const ab_lines lines[2], uint32_t *i, ui
 
 /* ---- the list of cells -------------------------------------------------------------------------------------------------- */
 
-static int by_key(const void *a, const void *b)
-{
+static int by_key(const void *a, const void *b) {
     const uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
     return (p > q) - (p < q);
 }
 
 /* Lists the cells of all pieces and their neighbours. key: room for 5 per piece. */
-static size_t list_cells(const ab_cells *cells, uint64_t *key)
-{
+static size_t list_cells(const ab_cells *cells, uint64_t *key) {
     size_t n = 0;
     uint32_t last_i = UINT32_MAX, last_j = UINT32_MAX;
     for (size_t c = 0; c < cells->cut_count; c++) {
@@ -118,14 +114,15 @@ static size_t list_cells(const ab_cells *cells, uint64_t *key)
     return unique;
 }
 
-ab_cell *ab_cells_find(const ab_cells *cells, uint32_t i, uint32_t j)
-{
+ab_cell *ab_cells_find(const ab_cells *cells, uint32_t i, uint32_t j) {
     if (i >= cells->lines[0].count || j >= cells->lines[1].count) return NULL;
     size_t a = cells->row[j], b = cells->row[j + 1];
     while (a < b) {
         const size_t middle = (a + b) / 2;
-        if (cells->cell[middle].i < i) a = middle + 1;
-        else b = middle;
+        if (cells->cell[middle].i < i)
+            a = middle + 1;
+        else
+            b = middle;
     }
     return a < cells->row[j + 1] && cells->cell[a].i == i ? &cells->cell[a] : NULL;
 }
@@ -133,13 +130,13 @@ ab_cell *ab_cells_find(const ab_cells *cells, uint32_t i, uint32_t j)
 /* ---- moments ------------------------------------------------------------------------------------------------------------ */
 
 /* Adds what a piece takes from or gives to its own cell, and to the running sums. Integrals of cubics along it: two Gauss points are exact. */
-static void add_piece(ab_cell *cell, const ab_cut *cut, const ab_lines lines[2])
-{
+static void add_piece(ab_cell *cell, const ab_cut *cut, const ab_lines lines[2]) {
     const double *u = &lines[0].line[cell->i], *v = &lines[1].line[cell->j];
     const double middle_u = 0.5 * (u[0] + u[1]), middle_v = 0.5 * (v[0] + v[1]), a = 0.5 * (u[1] - u[0]);
     const double du = cut->b[0] - cut->a[0], dv = cut->b[1] - cut->a[1], gauss = 0.28867513459481288;
     for (int q = -1; q <= 1; q += 2) {
-        const double x = 0.5 * (cut->a[0] + cut->b[0]) - middle_u + q * gauss * du, y = 0.5 * (cut->a[1] + cut->b[1]) - middle_v + q * gauss * dv;
+        const double x = 0.5 * (cut->a[0] + cut->b[0]) - middle_u + q * gauss * du,
+                     y = 0.5 * (cut->a[1] + cut->b[1]) - middle_v + q * gauss * dv;
         const double w = -0.5 * dv;
         cell->moments.area += w * (a - x);
         cell->moments.u += w * 0.5 * (a - x) * (a + x);
@@ -156,8 +153,7 @@ static void add_piece(ab_cell *cell, const ab_cut *cut, const ab_lines lines[2])
 }
 
 /* Running sums along the rows: what lies left of each cell. */
-static void sum_rows(ab_cells *cells)
-{
+static void sum_rows(ab_cells *cells) {
     for (uint32_t j = 0; j < cells->lines[1].count; j++) {
         const double height = cells->lines[1].line[j + 1] - cells->lines[1].line[j];
         double cover[3] = {0, 0, 0};
@@ -173,15 +169,16 @@ static void sum_rows(ab_cells *cells)
             for (int q = 0; q < 3; q++) cover[q] += c->cover[q];
             c->inside_after = cover[0] > 0.5 * height;
             const double full = width * height;
-            if (fabs(m->area - full) < 1e-13 * full) *m = (ab_moments){full, 0, 0, full * width * width / 12, 0, full * height * height / 12};
+            c->full = fabs(m->area - full) < 1e-13 * full;
+            if (c->full) *m = (ab_moments){full, 0, 0, full * width * width / 12, 0, full * height * height / 12};
         }
     }
 }
 
 /* Running sums along the columns: how much of each cell's bottom lies in the body. order: room for a number per cell. */
-static void sum_columns(ab_cells *cells, uint64_t *order)
-{
-    for (size_t k = 0; k < cells->count; k++) order[k] = (uint64_t)cells->cell[k].i << 32 | k; /* by column; cells are in order of rows already */
+static void sum_columns(ab_cells *cells, uint64_t *order) {
+    for (size_t k = 0; k < cells->count; k++)
+        order[k] = (uint64_t)cells->cell[k].i << 32 | k; /* by column; cells are in order of rows already */
     qsort(order, cells->count, sizeof *order, by_key);
     double across = 0;
     for (size_t k = 0; k < cells->count; k++) {
@@ -193,8 +190,7 @@ static void sum_columns(ab_cells *cells, uint64_t *order)
 }
 
 /* Lists pieces by row, for questions about places. */
-static void sort_pieces(ab_cells *cells)
-{
+static void sort_pieces(ab_cells *cells) {
     const uint32_t rows = cells->lines[1].count;
     memset(cells->cut_row, 0, (rows + 1) * sizeof *cells->cut_row);
     for (size_t c = 0; c < cells->cut_count; c++) cells->cut_row[cells->cell[cells->cut[c].cell].j + 1]++;
@@ -205,8 +201,7 @@ static void sort_pieces(ab_cells *cells)
     cells->cut_row[rows] = cells->cut_count;
 }
 
-ab_status ab_cells_create(ab_edge *edge, size_t count, ab_lines lines[2], ab_cells *cells, ab_filler *filler)
-{
+ab_status ab_cells_create(ab_edge *edge, size_t count, ab_lines lines[2], ab_cells *cells, ab_filler *filler) {
     *cells = (ab_cells){.lines = {lines[0], lines[1]}};
     size_t pieces = 0;
     for (size_t e = 0; e < count; e++) {
@@ -227,7 +222,8 @@ ab_status ab_cells_create(ab_edge *edge, size_t count, ab_lines lines[2], ab_cel
     if (!cells->cell) {
         free(key);
         ab_cells_clear(cells);
-        return ab_report_failure(filler->report, "body '%s': no memory for %zu pieces of its outline; use a larger cell or fewer per_cell", filler->body, pieces);
+        return ab_report_failure(filler->report, "body '%s': no memory for %zu pieces of its outline; use a larger cell or fewer per_cell",
+                                 filler->body, pieces);
     }
     uint32_t rows = 0;
     for (size_t k = 0; k < cells->count; k++) {

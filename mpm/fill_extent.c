@@ -8,16 +8,16 @@
 
 #include "mpm/fill_outline.h"
 
-typedef struct facing { double n[2], distance, length; } facing; /* pieces with one normal */
+typedef struct facing {
+    double n[2], distance, length;
+} facing; /* pieces with one normal */
 
-static double half_size(const double a[3], const double n[2])
-{
+static double half_size(const double a[3], const double n[2]) {
     return sqrt(fmax(0, n[0] * n[0] * a[0] + n[1] * n[1] * a[1] + 2 * n[0] * n[1] * a[2]));
 }
 
 /* A <- S A S, S = 1 + (ratio - 1) n n. */
-static void stretch(double a[3], const double n[2], double ratio)
-{
+static void stretch(double a[3], const double n[2], double ratio) {
     const double f = ratio - 1, an[2] = {a[0] * n[0] + a[2] * n[1], a[2] * n[0] + a[1] * n[1]};
     const double nan = n[0] * an[0] + n[1] * an[1];
     a[0] += 2 * f * an[0] * n[0] + f * f * nan * n[0] * n[0];
@@ -26,8 +26,7 @@ static void stretch(double a[3], const double n[2], double ratio)
 }
 
 /* Meets two sides at once: b_ij = n_i.A.n_j scaled to the distances, then A = sum b_ij m_i m_j with m dual to n. */
-static void fit_two(double a[3], const facing *f, const facing *g)
-{
+static void fit_two(double a[3], const facing *f, const facing *g) {
     const double *n = f->n, *k = g->n, sine = n[0] * k[1] - n[1] * k[0];
     const double m[2] = {k[1] / sine, -k[0] / sine}, l[2] = {-n[1] / sine, n[0] / sine}; /* m.n = 1, m.k = 0, l.n = 0, l.k = 1 */
     const double mixed = a[0] * n[0] * k[0] + a[1] * n[1] * k[1] + a[2] * (n[0] * k[1] + n[1] * k[0]);
@@ -39,8 +38,7 @@ static void fit_two(double a[3], const facing *f, const facing *g)
 }
 
 /* Meets three sides at once where there is such an A and it is no wilder than the old one. */
-static bool fit_three(double a[3], const facing f[3])
-{
+static bool fit_three(double a[3], const facing f[3]) {
     double m[3][4]; /* n.A.n = d^2, Cramer's rule */
     for (int k = 0; k < 3; k++) {
         const double *n = f[k].n;
@@ -63,16 +61,17 @@ static bool fit_three(double a[3], const facing f[3])
     return true;
 }
 
-static void fit(double a[3], facing *f, size_t count)
-{
+static void fit(double a[3], facing *f, size_t count) {
     size_t used = 0;
     double longest = 0;
-    for (size_t k = 0; k < count; k++) { /* opposite sides share one distance; in a notch the point may stand beyond a side, and keeps some size */
+    for (size_t k = 0; k < count;
+         k++) { /* opposite sides share one distance; in a notch the point may stand beyond a side, and keeps some size */
         const double now = half_size(a, f[k].n);
         f[k].distance = fmin(fmax(f[k].distance, 0.3 * now), 3 * now);
         size_t same = 0;
         while (same < used && fabs(f[same].n[0] * f[k].n[1] - f[same].n[1] * f[k].n[0]) > 1e-9) same++;
-        if (same == used) f[used++] = f[k];
+        if (same == used)
+            f[used++] = f[k];
         else {
             const double length = f[same].length + f[k].length;
             f[same].distance = (f[same].distance * f[same].length + f[k].distance * f[k].length) / length;
@@ -92,17 +91,18 @@ static void fit(double a[3], facing *f, size_t count)
         }
 }
 
-typedef struct owned { uint32_t point; uint32_t piece; } owned;
+typedef struct owned {
+    uint32_t point;
+    uint32_t piece;
+} owned;
 
-static int by_point(const void *a, const void *b)
-{
+static int by_point(const void *a, const void *b) {
     const owned *p = a, *q = b;
     if (p->point != q->point) return p->point < q->point ? -1 : 1;
     return (p->piece > q->piece) - (p->piece < q->piece);
 }
 
-ab_status ab_fill_fit_extents(ab_filler *filler, size_t first_piece)
-{
+ab_status ab_fill_fit_extents(ab_filler *filler, size_t first_piece) {
     const ab_fill *fill = filler->fill;
     const size_t count = fill->surface_count - first_piece;
     owned *list = malloc((count + 1) * sizeof *list);
@@ -119,9 +119,10 @@ ab_status ab_fill_fit_extents(ab_filler *filler, size_t first_piece)
         size_t used = 0;
         for (; k < count && list[k].point == p; k++) {
             const ab_surface *s = &fill->surface[list[k].piece];
-            sides[used++] = (facing){.n = {s->normal[0], s->normal[1]},
-                                     .distance = (s->position[0] - fill->x[p]) * s->normal[0] + (s->position[1] - fill->y[p]) * s->normal[1],
-                                     .length = s->length};
+            sides[used++] =
+                (facing){.n = {s->normal[0], s->normal[1]},
+                         .distance = (s->position[0] - fill->x[p]) * s->normal[0] + (s->position[1] - fill->y[p]) * s->normal[1],
+                         .length = s->length};
         }
         fit(&fill->extent[3 * (size_t)p], sides, used);
     }

@@ -4,21 +4,18 @@
 
 #include "mpm/fill_outline.h"
 
-uint32_t ab_cells_root(const ab_cells *cells, uint32_t cell)
-{
+uint32_t ab_cells_root(const ab_cells *cells, uint32_t cell) {
     while (cells->cell[cell].root != cell) cell = cells->cell[cell].root;
     return cell;
 }
 
-static double full_area(const ab_cells *cells, const ab_cell *c)
-{
+static double full_area(const ab_cells *cells, const ab_cell *c) {
     const double *u = &cells->lines[0].line[c->i], *v = &cells->lines[1].line[c->j];
     return (u[1] - u[0]) * (v[1] - v[0]);
 }
 
 /* Adds the moments of a cell to those of another, about the middle of the other. */
-static void join(ab_cells *cells, uint32_t from, uint32_t into)
-{
+static void join(ab_cells *cells, uint32_t from, uint32_t into) {
     const ab_cell *f = &cells->cell[from];
     ab_cell *t = &cells->cell[into];
     const double *const u = cells->lines[0].line, *const v = cells->lines[1].line;
@@ -32,11 +29,13 @@ static void join(ab_cells *cells, uint32_t from, uint32_t into)
     t->moments.v += m->v + dv * m->area;
     t->moments.area += m->area;
     cells->cell[from].root = into;
+    t->full = false;
 }
 
-/* The neighbour of another root that shares the longest side (of equal ones the fullest), or NULL. */
-static ab_cell *best_neighbour(const ab_cells *cells, const ab_cell *c, uint32_t own_root)
-{
+static bool too_small(const ab_cells *cells, const ab_cell *c) { return c->moments.area < 0.3 * full_area(cells, c); }
+
+/* The neighbour of another root that shares the longest side (of equal ones the fullest), or NULL. sound: one that is no sliver itself. */
+static ab_cell *best_neighbour(const ab_cells *cells, const ab_cell *c, uint32_t own_root, bool sound) {
     ab_cell *const right = ab_cells_find(cells, c->i + 1, c->j), *const top = ab_cells_find(cells, c->i, c->j + 1);
     ab_cell *const neighbour[4] = {ab_cells_find(cells, c->i - 1, c->j), right, ab_cells_find(cells, c->i, c->j - 1), top};
     const double shared[4] = {c->left, right ? right->left : 0, c->bottom, top ? top->bottom : 0};
@@ -47,7 +46,7 @@ static ab_cell *best_neighbour(const ab_cells *cells, const ab_cell *c, uint32_t
         if (!neighbour[k]) continue;
         const uint32_t root = ab_cells_root(cells, (uint32_t)(neighbour[k] - cells->cell));
         const double area = cells->cell[root].moments.area;
-        if (root == own_root || area <= 0) continue;
+        if (root == own_root || area <= 0 || (sound && (shared[k] <= 0 || too_small(cells, neighbour[k])))) continue;
         if (best && (shared[k] < best_shared - 1e-9 * size || (shared[k] < best_shared + 1e-9 * size && area <= best_area))) continue;
         best = neighbour[k];
         best_shared = shared[k];
@@ -56,39 +55,45 @@ static ab_cell *best_neighbour(const ab_cells *cells, const ab_cell *c, uint32_t
     return best;
 }
 
-typedef struct sliver { double area; uint32_t cell; } sliver;
+typedef struct sliver {
+    double area;
+    uint32_t cell;
+} sliver;
 
-static int by_area(const void *a, const void *b)
-{
+static int by_area(const void *a, const void *b) {
     const sliver *p = a, *q = b;
     if (p->area != q->area) return p->area < q->area ? -1 : 1;
     return (p->cell > q->cell) - (p->cell < q->cell);
 }
 
-ab_status ab_cells_merge(ab_cells *cells, ab_filler *filler)
-{
+ab_status ab_cells_merge(ab_cells *cells, ab_filler *filler) {
     size_t count = 0;
-    for (size_t k = 0; k < cells->count; k++) count += cells->cell[k].pieces > 0 && cells->cell[k].moments.area < 0.3 * full_area(cells, &cells->cell[k]);
+    for (size_t k = 0; k < cells->count; k++) count += cells->cell[k].pieces > 0 && too_small(cells, &cells->cell[k]);
     sliver *list = malloc((count + 1) * sizeof *list);
     if (!list) return ab_report_failure(filler->report, "body '%s': no memory for %zu cut cells", filler->body, count);
     count = 0;
     for (size_t k = 0; k < cells->count; k++) {
         const ab_cell *c = &cells->cell[k];
-        if (c->pieces > 0 && c->moments.area < 0.3 * full_area(cells, c)) list[count++] = (sliver){c->moments.area, (uint32_t)k};
+        if (c->pieces > 0 && too_small(cells, c)) list[count++] = (sliver){c->moments.area, (uint32_t)k};
     }
     qsort(list, count, sizeof *list, by_area);
-    for (bool again = true; again;) { /* slivers joined to slivers may still be too small; each turn leaves fewer of them */
-        again = false;
+    /* First each goes to a sound neighbour, on its own: two halves of a tip stay mirrored. What is left are slivers among slivers; joined they
+     * may still be too small, and each turn leaves fewer of them. */
+    for (bool sound = true, again = true; again;) {
+        again = sound;
         for (size_t k = 0; k < count; k++) {
             const uint32_t own = ab_cells_root(cells, list[k].cell);
-            if (cells->cell[own].moments.area >= 0.3 * full_area(cells, &cells->cell[own])) continue;
-            const ab_cell *neighbour = best_neighbour(cells, &cells->cell[list[k].cell], own);
+            if (!too_small(cells, &cells->cell[own])) continue;
+            const ab_cell *neighbour = best_neighbour(cells, &cells->cell[list[k].cell], own, sound);
             if (!neighbour) continue;
             const uint32_t other = ab_cells_root(cells, (uint32_t)(neighbour - cells->cell));
-            if (cells->cell[other].moments.area >= cells->cell[own].moments.area) join(cells, own, other);
-            else join(cells, other, own);
+            if (cells->cell[other].moments.area >= cells->cell[own].moments.area)
+                join(cells, own, other);
+            else
+                join(cells, other, own);
             again = true;
         }
+        sound = false;
     }
     free(list);
     return AB_OK;
@@ -97,15 +102,13 @@ ab_status ab_cells_merge(ab_cells *cells, ab_filler *filler)
 /* ---- places ------------------------------------------------------------------------------------------------------------- */
 
 /* Where a piece crosses the height v; a piece holds its lower end, not its upper one. */
-static bool crosses(const ab_cut *cut, double v, double *u)
-{
+static bool crosses(const ab_cut *cut, double v, double *u) {
     if ((cut->a[1] <= v) == (cut->b[1] <= v)) return false;
     *u = cut->a[0] + (v - cut->a[1]) / (cut->b[1] - cut->a[1]) * (cut->b[0] - cut->a[0]);
     return true;
 }
 
-bool ab_cells_inside(const ab_cells *cells, const double u[2])
-{
+bool ab_cells_inside(const ab_cells *cells, const double u[2]) {
     const uint32_t j = ab_lines_find(&cells->lines[1], u[1]);
     int turns = 0;
     for (size_t k = cells->cut_row[j]; k < cells->cut_row[j + 1]; k++) {
@@ -117,8 +120,7 @@ bool ab_cells_inside(const ab_cells *cells, const double u[2])
 }
 
 /* The longest stretch of the body within the cell at height v: its length and middle. */
-static double longest_stretch(const ab_cells *cells, const ab_cell *cell, double v, double *middle)
-{
+static double longest_stretch(const ab_cells *cells, const ab_cell *cell, double v, double *middle) {
     const double low = cells->lines[0].line[cell->i], high = cells->lines[0].line[cell->i + 1];
     double best = 0;
     for (double from = low; from < high;) { /* from crossing to crossing */
@@ -136,8 +138,7 @@ static double longest_stretch(const ab_cells *cells, const ab_cell *cell, double
     return best;
 }
 
-bool ab_cells_place_inside(const ab_cells *cells, const ab_cell *cell, double u[2])
-{
+bool ab_cells_place_inside(const ab_cells *cells, const ab_cell *cell, double u[2]) {
     const double low = cells->lines[1].line[cell->j], high = cells->lines[1].line[cell->j + 1], wanted = u[1];
     double best = 0;
     for (int k = -1; k < 16; k++) {

@@ -33,13 +33,20 @@ double ab_fill_parts(double length, double size);
 /* Gauss-Legendre on [0, 1]: places and weights (sum 1), symmetric to the last bit; and where each point's share begins and how
  * far it reaches: from the sum of weights before it, half its weight, or for the outermost points the distance to the edge. */
 enum { AB_GAUSS_MOST = 64 };
-typedef struct ab_gauss { int count; double place[AB_GAUSS_MOST], weight[AB_GAUSS_MOST], share[AB_GAUSS_MOST + 1], half[AB_GAUSS_MOST]; } ab_gauss;
+typedef struct ab_gauss {
+    int count;
+    double place[AB_GAUSS_MOST], weight[AB_GAUSS_MOST], share[AB_GAUSS_MOST + 1], half[AB_GAUSS_MOST];
+} ab_gauss;
 void ab_gauss_rule(int count, ab_gauss *rule);
 
 /* The two factors of per_cell closest to each other, *more >= *fewer. An error where a direction would need more than AB_GAUSS_MOST
  * points, a warning where one would have more than twice as many as the other. */
 ab_status ab_gauss_factors(const ab_filler *filler, ab_mark mark, int *more, int *fewer);
 
+/* Refuses a box, disc or ring of no size, and a kind that is unknown. */
+ab_status ab_fill_check(const ab_filler *filler, const ab_shape_spec *shape);
+
+ab_status ab_fill_shape(ab_filler *filler, const ab_shape_spec *shape); /* any kind */
 ab_status ab_fill_box(ab_filler *filler, const ab_shape_spec *shape);
 ab_status ab_fill_round(ab_filler *filler, const ab_shape_spec *shape); /* disc, ring */
 

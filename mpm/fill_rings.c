@@ -8,10 +8,12 @@
 #include "mpm/fill_parts.h"
 
 /* One circle of points at radius r, reaching half a width in and out of it, that share an area. Outline pieces at outer, inner where >= 0. */
-typedef struct circle { double r, half, area, around; double outer, inner; } circle;
+typedef struct circle {
+    double r, half, area, around;
+    double outer, inner;
+} circle;
 
-static void add_circle(ab_filler *filler, const double center[2], const circle *c)
-{
+static void add_circle(ab_filler *filler, const double center[2], const circle *c) {
     const size_t quarter = (size_t)(c->around / 4), count = 4 * quarter;
     const double tangential = AB_PI * c->r / c->around; /* half the arc */
     const double rr = c->half * c->half, tt = tangential * tangential;
@@ -23,8 +25,8 @@ static void add_circle(ab_filler *filler, const double center[2], const circle *
             nx = -ny;
             ny = old;
         }
-        const uint32_t p = ab_filler_point(filler, center[0] + c->r * nx, center[1] + c->r * ny, c->area / c->around, rr * nx * nx + tt * ny * ny,
-                                           rr * ny * ny + tt * nx * nx, (rr - tt) * nx * ny);
+        const uint32_t p = ab_filler_point(filler, center[0] + c->r * nx, center[1] + c->r * ny, c->area / c->around,
+                                           rr * nx * nx + tt * ny * ny, rr * ny * ny + tt * nx * nx, (rr - tt) * nx * ny);
         if (c->outer >= 0)
             ab_filler_piece(filler, p, center[0] + c->outer * nx, center[1] + c->outer * ny, nx, ny, 2 * AB_PI * c->outer / c->around);
         if (c->inner >= 0)
@@ -33,11 +35,12 @@ static void add_circle(ab_filler *filler, const double center[2], const circle *
 }
 
 /* A disc too small for four points: one, with four pieces of outline. */
-static ab_status add_single(ab_filler *filler, const ab_shape_spec *shape)
-{
+static ab_status add_single(ab_filler *filler, const ab_shape_spec *shape) {
     const double radius = shape->radius, *center = shape->center;
     if (AB_PI * radius * radius < 0.5 * filler->spacing * filler->spacing)
-        ab_report_warning(filler->report, shape->mark, "body '%s': its disc of radius %g m is small against the %g m between points and has a single one; use a smaller cell or more per_cell",
+        ab_report_warning(filler->report, shape->mark,
+                          "body '%s': its disc of radius %g m is small against the %g m between points and has a single one; use a smaller "
+                          "cell or more per_cell",
                           filler->body, radius, filler->spacing);
     AB_TRY(ab_filler_reserve(filler, shape->mark, 1, 4));
     const uint32_t p = ab_filler_point(filler, center[0], center[1], AB_PI * radius * radius, radius * radius, radius * radius, 0);
@@ -48,21 +51,17 @@ static ab_status add_single(ab_filler *filler, const ab_shape_spec *shape)
     return AB_OK;
 }
 
-ab_status ab_fill_round(ab_filler *filler, const ab_shape_spec *shape)
-{
+ab_status ab_fill_round(ab_filler *filler, const ab_shape_spec *shape) {
     const double radius = shape->radius, inner = shape->kind == AB_SHAPE_RING ? shape->inner : 0;
-    if (!(radius > 0) || !isfinite(radius) || !isfinite(shape->center[0]) || !isfinite(shape->center[1]))
-        return ab_report_error(filler->report, shape->mark, "body '%s': radius %g; it must be positive", filler->body, radius);
-    if (!(inner >= 0) || !(inner < radius))
-        return ab_report_error(filler->report, shape->mark, "body '%s': inner radius %g of a ring of radius %g; it must be less than the radius and not negative",
-                               filler->body, inner, radius);
     ab_filler_bound(filler, shape->center[0] - radius, shape->center[1] - radius);
     ab_filler_bound(filler, shape->center[0] + radius, shape->center[1] + radius);
     const bool gauss = filler->rule == AB_FILL_GAUSS;
     const double total = AB_PI * (radius - inner) * (radius + inner), share = filler->spacing * filler->spacing;
     if (inner == 0 && total < 2.5 * share) return add_single(filler, shape);
     if (radius - inner < 0.5 * filler->spacing)
-        ab_report_warning(filler->report, shape->mark, "body '%s': its ring is %g m thick, less than half of the %g m between points, and has a single row of them; use a smaller cell or more per_cell",
+        ab_report_warning(filler->report, shape->mark,
+                          "body '%s': its ring is %g m thick, less than half of the %g m between points, and has a single row of them; use "
+                          "a smaller cell or more per_cell",
                           filler->body, radius - inner, filler->spacing);
 
     ab_gauss rule;
