@@ -42,43 +42,36 @@ static double share(const ab_progress *p, const ab_state_view *view) {
     return part > 1 ? 1 : part > 0 ? part : 0;
 }
 
-/* Adds a part where it still fits; what matters most comes first. */
-static void add(char *line, size_t size, int width, const char *part) {
+/* Adds a part where it still fits, and none after one that did not: what matters most comes first. */
+static bool add(char *line, size_t size, int width, const char *part) {
     const size_t used = strlen(line), more = strlen(part);
-    if (used + more < size && (int)(used + more) <= width) memcpy(line + used, part, more + 1);
+    if (used + more >= size || (int)(used + more) > width) return false;
+    memcpy(line + used, part, more + 1);
+    return true;
 }
 
+/* Parts keep their widths while their numbers change, so that a bar stands still. */
 void ab_progress_format(const ab_progress *p, const ab_state_view *view, int width, char *line, size_t size) {
     const double part = share(p, view);
-    char text[256], left[32];
-    line[0] = '\0';
-    snprintf(text, sizeof text, "%3d %%", (int)(100 * part));
-    add(line, size, width, text);
+    char bar[24] = "", left[24], parts[8][256];
     if (p->terminal && width >= 60) {
-        char bar[21];
-        const int full = (int)(20 * part);
-        for (int k = 0; k < 20; k++) bar[k] = k < full ? '#' : '.';
-        bar[20] = '\0';
-        snprintf(text, sizeof text, " %s", bar);
-        add(line, size, width, text);
+        const int cells = width < 110 ? 10 : 20, full = (int)(cells * part);
+        bar[0] = ' ';
+        for (int k = 0; k < cells; k++) bar[k + 1] = k < full ? '#' : '.';
+        bar[cells + 1] = '\0';
     }
     duration(p->time_per_second > 0 ? (p->time_end - view->time) / p->time_per_second : INFINITY, left, sizeof left);
-    snprintf(text, sizeof text, "  t %.4g of %.4g s", view->time, p->time_end);
-    add(line, size, width, text);
-    snprintf(text, sizeof text, "  left %s", left);
-    add(line, size, width, text);
-    snprintf(text, sizeof text, "  %.3g M points/s", 1e-6 * p->points_per_second);
-    add(line, size, width, text);
-    snprintf(text, sizeof text, "  step %ld", view->step);
-    add(line, size, width, text);
-    snprintf(text, sizeof text, "  remainder %.2g J", view->remainder);
-    add(line, size, width, text);
-    snprintf(text, sizeof text, "  dt %.3g s", view->dt);
-    add(line, size, width, text);
-    if (view->limit != NULL) {
-        snprintf(text, sizeof text, " (%.200s)", view->limit);
-        add(line, size, width, text);
-    }
+    snprintf(parts[0], sizeof parts[0], "%3d %%%s", (int)(100 * part), bar);
+    snprintf(parts[1], sizeof parts[1], "  t %.4g of %.4g s", view->time, p->time_end);
+    snprintf(parts[2], sizeof parts[2], "  left %-7s", left);
+    snprintf(parts[3], sizeof parts[3], "  %5.3g M/s", 1e-6 * p->points_per_second); /* point-steps */
+    snprintf(parts[4], sizeof parts[4], "  remainder %+.1e J", view->remainder);
+    snprintf(parts[5], sizeof parts[5], "  step %ld", view->step);
+    snprintf(parts[6], sizeof parts[6], "  dt %.2e s", view->dt);
+    snprintf(parts[7], sizeof parts[7], " (%.200s)", view->limit != NULL ? view->limit : "as given");
+    line[0] = '\0';
+    for (int k = 0; k < 8; k++)
+        if (!add(line, size, width, parts[k])) return;
 }
 
 static void measure(ab_progress *p, const ab_state_view *view, double clock) {

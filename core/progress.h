@@ -23,7 +23,7 @@ void ab_progress_begin(ab_progress *progress, FILE *stream, bool quiet, double t
 void ab_progress_step(ab_progress *progress, const ab_state_view *view);
 /* Takes the bar away. */
 void ab_progress_end(ab_progress *progress);
-/* The line as shown, no longer than `width` characters; for a terminal with a bar. */
+/* The line as shown (share, t, remaining time, million point-steps per second, remainder, step, dt and what binds it), no longer than `width` characters; for a terminal with a bar. */
 void ab_progress_format(const ab_progress *progress, const ab_state_view *view, int width, char *line, size_t size);
 
 #endif

@@ -36,7 +36,9 @@ static ab_status find_all(ab_results *results, const ab_state_view *view, ab_rep
     const ab_scene *scene = view->scene;
     results->motion_start = calloc(scene->body_count + 1, sizeof *results->motion_start);
     results->energy_start = calloc(scene->body_count + 1, sizeof *results->energy_start);
-    if (results->motion_start == NULL || results->energy_start == NULL) return ab_report_failure(report, "no memory for results");
+    results->contacts = calloc(scene->contact_count + 1, sizeof *results->contacts);
+    if (results->motion_start == NULL || results->energy_start == NULL || results->contacts == NULL)
+        return ab_report_failure(report, "no memory for results");
     for (size_t b = 0; b < scene->body_count; b++) {
         results->motion_start[b] = view->motion[b];
         results->energy_start[b] = view->energy[b];
@@ -112,9 +114,22 @@ static ab_status frame(ab_results *results, const ab_state_view *view, ab_report
     return AB_OK;
 }
 
+static void add_contacts(ab_results *results, const ab_state_view *view) {
+    for (size_t k = 0; view->step > 0 && k < view->scene->contact_count; k++) {
+        const ab_contact_totals *now = &view->contacts[k];
+        ab_contact_sums *sums = &results->contacts[k];
+        for (int c = 0; c < 2; c++) sums->impulse[c] += now->impulse[c];
+        sums->normal += now->normal_force * view->dt;
+        sums->friction += now->friction_force * view->dt;
+        sums->peak = fmax(sums->peak, now->normal_force);
+        sums->deepest = fmax(sums->deepest, now->penetration);
+    }
+}
+
 ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report) {
     const ab_scene *scene = results->scene;
     results->largest_moved = ab_results_moved(results, view);
+    add_contacts(results, view);
     AB_TRY(sample(results, view, false, report));
     const long every = scene->history_every > 0 ? scene->history_every : 1;
     if (view->step % every == 0) AB_TRY(ab_history_row(results->history, view, results->monitors, report));
@@ -157,6 +172,7 @@ void ab_results_destroy(ab_results *results) {
     free(results->expect_column);
     free(results->motion_start);
     free(results->energy_start);
+    free(results->contacts);
     free(results->folder);
     free(results);
 }

@@ -17,6 +17,13 @@ long ab_history_last_step(const ab_history *history); /* of the last row; -1 whe
 ab_status ab_history_close(ab_history *history, ab_report *report);
 void ab_history_destroy(ab_history *history);
 
+typedef struct ab_contact_sums { /* over the run */
+    double impulse[2];           /* N s on the second body */
+    double normal, friction;     /* N s: time integrals of the two forces */
+    double peak;                 /* N: largest normal force */
+    double deepest;              /* m */
+} ab_contact_sums;
+
 struct ab_results {
     const ab_scene *scene;
     char *folder;
@@ -30,7 +37,8 @@ struct ab_results {
     double next_frame;       /* s */
     ab_motion *motion_start; /* per body */
     ab_energy *energy_start;
-    double largest_moved; /* J: the largest change of any term of the ledger so far */
+    ab_contact_sums *contacts; /* per contact */
+    double largest_moved;      /* J: the largest change of any term of the ledger so far */
 };
 
 /* Largest change of a term of the whole scene between the start and now. */

@@ -63,7 +63,8 @@ static void motion(ab_text *text, const ab_motion *bodies, const ab_scene *scene
     ab_text_add(text, "}");
 }
 
-static void contacts(ab_text *text, const ab_state_view *view) {
+/* The last step, and what it came to over the run. */
+static void contacts(ab_text *text, const ab_results *results, const ab_state_view *view) {
     const ab_scene *scene = view->scene;
     ab_text_add(text, "[");
     for (size_t k = 0; k < scene->contact_count; k++) {
@@ -72,7 +73,15 @@ static void contacts(ab_text *text, const ab_state_view *view) {
         ab_text_add_escaped(text, scene->bodies[scene->contacts[k].body[0]].name);
         ab_text_add(text, ", ");
         ab_text_add_escaped(text, scene->bodies[scene->contacts[k].body[1]].name);
-        number(text, "], \"force\": [", c->force[0]);
+        const ab_contact_sums *sums = &results->contacts[k];
+        const double span = view->time > 0 ? view->time : 1;
+        number(text, "], \"impulse\": [", sums->impulse[0]);
+        number(text, ", ", sums->impulse[1]);
+        number(text, "], \"mean_normal_force\": ", sums->normal / span);
+        number(text, ", \"mean_friction_force\": ", sums->friction / span);
+        number(text, ", \"peak_normal_force\": ", sums->peak);
+        number(text, ", \"deepest_penetration\": ", sums->deepest);
+        number(text, ", \"force\": [", c->force[0]);
         number(text, ", ", c->force[1]);
         number(text, "], \"moment\": ", c->moment);
         number(text, ", \"normal_force\": ", c->normal_force);
@@ -182,7 +191,7 @@ ab_status ab_summary_write(const ab_results *results, const ab_state_view *view,
     motion(&text, view->motion, scene);
     ab_text_add(&text, "\n  }");
     key(&text, "contacts", false);
-    contacts(&text, view);
+    contacts(&text, results, view);
     key(&text, "expects", false);
     expects(&text, results);
     key(&text, "columns", false);

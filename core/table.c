@@ -15,22 +15,23 @@ static void ledger(const ab_results *results, const ab_state_view *view, FILE *s
         fprintf(stream, "  %-14s %14.6g %14.6g\n", ab_term_name(term), start, end);
     }
     fprintf(stream, "  %-14s %14s %14.6g", "remainder", "", view->remainder);
-    if (moved > 0) fprintf(stream, " %9.3g%%", 100 * view->remainder / moved);
+    if (moved > 0) fprintf(stream, "  %.3g %% of the largest that moved", 100 * view->remainder / moved);
     fprintf(stream, "\n");
 }
 
-static void contacts(const ab_state_view *view, FILE *stream) {
+static void contacts(const ab_results *results, const ab_state_view *view, FILE *stream) {
     const ab_scene *scene = view->scene;
     if (scene->contact_count == 0) return;
-    fprintf(stream, "\n  %-30s %12s %12s %8s %8s %12s\n", "contact, at the end", "normal, N", "friction, N", "points", "active",
-            "penetration");
+    const double span = view->time > 0 ? view->time : 1;
+    fprintf(stream, "\n  %-29s %11s %11s %11s %6s %6s %11s\n", "contact", "normal, N", "mean", "friction, N", "points", "active",
+            "deepest, m");
     for (size_t k = 0; k < scene->contact_count; k++) {
         const ab_contact_totals *c = &view->contacts[k];
-        char name[31];
+        char name[30];
         snprintf(name, sizeof name, "%.13s - %.13s", scene->bodies[scene->contacts[k].body[0]].name,
                  scene->bodies[scene->contacts[k].body[1]].name);
-        fprintf(stream, "  %-30s %12.6g %12.6g %8zu %8zu %12.4g\n", name, c->normal_force, c->friction_force, c->points, c->active,
-                c->penetration);
+        fprintf(stream, "  %-29s %11.5g %11.5g %11.5g %6zu %6zu %11.3g\n", name, c->normal_force, results->contacts[k].normal / span,
+                c->friction_force, c->points, c->active, results->contacts[k].deepest);
     }
 }
 
@@ -51,7 +52,7 @@ void ab_results_table(const ab_results *results, const ab_state_view *view, cons
     fprintf(stream, "  %.4g million point-steps per second, %.4g MB at most\n", 1e-6 * facts->point_steps_per_second,
             1e-6 * (double)facts->peak_bytes);
     ledger(results, view, stream);
-    contacts(view, stream);
+    contacts(results, view, stream);
     expects(results, stream);
     fprintf(stream, "\n  results in %s\n", results->folder);
     fflush(stream);
