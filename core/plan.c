@@ -278,6 +278,8 @@ ab_status ab_plan_print(const ab_scene *scene, const ab_run_options *options, bo
     ab_report *first_steps = ab_report_create(); /* their mistakes belong to the run */
     const double seconds_per_step = first_steps ? measure(schedule, first_steps) : 0.0;
     ab_report_destroy(first_steps);
+    ab_schedule_destroy(schedule);
+    AB_TRY(ab_schedule_create(scene, options, &schedule, report)); /* as it is at the start, not where measuring left it */
     ab_text text = {0};
     (json ? ab_plan_add_json : ab_plan_add_text)(&text, schedule, options, seconds_per_step);
     ab_schedule_destroy(schedule);

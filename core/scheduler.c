@@ -26,6 +26,8 @@ static double seconds(clockid_t clock)
 enum { PHASE_BEGIN, PHASE_CONTACT, PHASE_FINISH, PHASE_REMAP, PHASE_STRESS, PHASE_RESULTS, PHASES };
 static const char *const PHASE_NAMES[PHASES] = {"nodes from points", "contact", "points from nodes", "nodes again", "stress and points to nodes", "results"};
 
+static double choose_dt(ab_schedule *s);
+
 /* ---- making and unmaking ------------------------------------------------------------------------------------------------ */
 
 ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *options, ab_schedule **out, ab_report *report)
@@ -56,6 +58,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     ab_schedule_look(s);
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
+    s->dt = choose_dt(s);
     *out = s;
     return AB_OK;
 }
@@ -209,7 +212,6 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
 {
     ab_schedule *s = NULL;
     AB_TRY(ab_schedule_create(scene, options, &s, report));
-    s->dt = choose_dt(s);
     warn_of_dt(s, report);
     ab_report_print(report, stderr);
     ab_state_view view;

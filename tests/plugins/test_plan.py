@@ -1,0 +1,94 @@
+"""The plan says what a scene needs, and what it does not need is not there. test_plan.py BUILD
+
+One body: no contact pass, no contact plugin. An elastic body: no state arrays; a plastic one has them. No boundary plugin: no boundary pass. An empty
+grid costs nothing: a box of 4000 m x 4000 m around a block takes what one of 8 m x 4 m takes, in the plan and in the process that runs it."""
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+abut = os.path.join(os.path.abspath(sys.argv[1]), "abut")
+os.chdir(os.environ.get("ABUT_SCRATCH") or tempfile.mkdtemp())
+
+SCENE = """
+abut: 1
+space: plane-strain
+time: {end: 0.02, dt: 1e-4}
+grid: {from: [0, 0], to: [8, 4], cell: 0.25}
+materials:
+  soil: {model: linear-elastic, E: 1 MPa, nu: 0.3, density: 1000}
+bodies:
+  block: {method: material-points, material: soil, shape: {box: [[2, 1], [4, 2]]}, fill: {rule: regular, per_cell: 4}, velocity: [0.1, 0]}
+"""
+SECOND = """
+  other: {method: material-points, material: soil, shape: {box: [[5, 1], [7, 2]]}, fill: {rule: regular, per_cell: 4}}
+contact:
+  - {bodies: [block, other], algorithm: multi-velocity, response: coulomb, friction: 0.1}
+"""
+
+
+def write(name, text):
+    with open(name, "w") as stream:
+        stream.write(text)
+    return name
+
+
+def plan(name, *options):
+    done = subprocess.run([abut, "plan", name, "--json", *options], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def peak_of_run(name, *options):
+    """Bytes of the largest run so far of this process's children, and the processor seconds of this one."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    subprocess.run([abut, "run", name, "--quiet", "-j", "1", *options], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open("results/" + name.removesuffix(".yaml") + "/summary.json") as stream:
+        return json.load(stream)["peak_bytes"], after.ru_utime - before
+
+
+one = write("one.yaml", SCENE)
+two = write("two.yaml", SCENE + SECOND)
+
+alone = plan(one)
+assert [body["name"] for body in alone["bodies"]] == ["block"]
+assert alone["points"] == alone["bodies"][0]["points"] == 4 * 8 * 4, alone["points"]
+assert alone["cells"] == 8 * 4, alone["cells"]
+assert alone["contact_passes"] == 0 and alone["contacts"] == [] and alone["boundary_passes"] == 0
+assert [plugin["kind"] for plugin in alone["plugins"]] == ["material"], alone["plugins"]
+assert any(line.startswith("contact:") for line in alone["not_paid_for"])
+assert any(line.startswith("state:") for line in alone["not_paid_for"])
+assert abs(alone["steps"] - 200) < 1 and alone["dt"] == 1e-4 and 0 < alone["critical_dt"] and alone["limit"]
+
+# What is not on the plan is not opened either.
+traced = subprocess.run([abut, "run", one, "--quiet", "-j", "1", "-o", "traced"], env={**os.environ, "LD_DEBUG": "files"}, capture_output=True, text=True)
+assert "linear_elastic.so" in traced.stderr and "multi_velocity.so" not in traced.stderr and "coulomb.so" not in traced.stderr
+
+together = plan(two)
+assert together["contact_passes"] == 1 and len(together["contacts"]) == 1
+assert sorted(plugin["name"] for plugin in together["plugins"]) == ["coulomb", "linear-elastic", "multi-velocity"]
+assert all(plugin["for"] and os.path.isfile(plugin["file"]) for plugin in together["plugins"])
+assert not any(line.startswith("contact:") for line in together["not_paid_for"])
+
+plastic = plan(one, "--set", "materials.soil.model=von-mises", "--set", "materials.soil.yield=1e9")
+extra = set(plastic["bodies"][0]["fields"]) - set(alone["bodies"][0]["fields"])
+assert extra and not any(line.startswith("state:") for line in plastic["not_paid_for"]), extra
+assert plastic["bodies"][0]["bytes_per_point"] > alone["bodies"][0]["bytes_per_point"]
+
+# Empty grid: at the corner of the box or in its middle, 16000 x 16000 cells cost what 32 x 16 cost.
+wide = ["--set", "grid.from=[-1999,-1999]", "--set", "grid.to=[2001,2001]"]
+big = plan(one, *wide)
+assert big["bytes"] <= 1.05 * alone["bytes"] and big["tiles"] <= alone["tiles"] + 16, (big["bytes"], alone["bytes"])
+small_peak, small_seconds = peak_of_run(one)
+big_peak, big_seconds = peak_of_run(one, *wide)
+print(f"peak memory {small_peak / 2**20:.1f} and {big_peak / 2**20:.1f} MiB, time {small_seconds:.3f} and {big_seconds:.3f} s in the small and the large box")
+assert big_peak <= 1.1 * small_peak + 2**20
+assert big_seconds <= 1.5 * small_seconds + 0.1
+
+text = subprocess.run([abut, "plan", two], capture_output=True, text=True, check=True).stdout
+for wanted in ("block", "other", "multi-velocity", "points", "steps", "Not paid for", "stable limit"):
+    assert wanted in text, f"'{wanted}' is not in the plan:\n{text}"
+assert not os.path.exists("results/two"), "a plan writes nothing"
+print("the plan holds")
