@@ -6,7 +6,7 @@
 
 static void ledger(const ab_results *results, const ab_state_view *view, FILE *stream) {
     const double moved = ab_results_moved(results, view);
-    fprintf(stream, "\n  %-14s %14s %14s %10s\n", "energy, J", "start", "end", "share");
+    fprintf(stream, "\n  %-14s %14s %14s\n", "energy, J", "start", "end");
     for (size_t term = 0; term < AB_TERMS; term++) {
         double start = 0;
         for (size_t b = 0; b < view->scene->body_count; b++) start += ab_term_value(&results->energy_start[b], term);
