@@ -19,6 +19,7 @@ typedef struct contact_all {
     ab_contact_totals *totals;
     double *friction, *contact; /* per body */
     long found_step;            /* step whose points are at hand; -1: none */
+    long answered_step;         /* step whose dynamic stage is done */
 } contact_all;
 
 static void relative_velocity(const contact_pair *pair, const ab_dofs *a, const ab_dofs *b, bool old, size_t i, double v[2])
@@ -63,15 +64,40 @@ static ab_status complain(const contact_pair *pair, const ab_service *service, c
     return ab_report_failure(report, "contact of '%s' and '%s': %s failed: %s", pair->a->spec->name, pair->b->spec->name, what, service->message[0] ? service->message : "no reason given");
 }
 
-/* One round over a pair's points. *change, *largest: N s. */
-static ab_status round_over(contact_pair *pair, double *change, double *largest, ab_report *report)
+/* The response's wishes for points first .. first + count - 1. */
+static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report)
+{
+    const ab_contact_ops *ops = &pair->spec->responder->contact;
+    if (ops->respond(pair->responder, &pair->points.view, first, count) == 0) return AB_OK;
+    return complain(pair, &pair->responder_service, "the response", report);
+}
+
+/* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
+ * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
+ * the difference would pump energy into the strain. `history`: rows of HISTORY_*. */
+static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history)
+{
+    ab_points *p = &pair->points.view;
+    const size_t ld = p->ld;
+    for (size_t i = first; i < first + count; ++i) {
+        const int status = (int)history[HISTORY_STATUS * ld + i];
+        if (status == STATUS_FREE) continue;
+        const double nx = p->normal[i], ny = p->normal[ld + i], vx = p->relative_velocity[i], vy = p->relative_velocity[ld + i];
+        const double jn = p->normal_mass[i] * (vx * nx + vy * ny - history[HISTORY_NORMAL * ld + i]);
+        const double jt = status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
+        p->impulse[i] += jn * nx - jt * ny;
+        p->impulse[ld + i] += jn * ny + jt * nx;
+    }
+}
+
+/* One round over a pair's points. history: NULL in the dynamic stage. *change, *largest: N s. */
+static ab_status round_over(contact_pair *pair, const double *history, double *change, double *largest, ab_report *report)
 {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     ab_dofs a, b;
     pair->a->ops->dofs(pair->a, &a);
     pair->b->ops->dofs(pair->b, &b);
-    const ab_contact_ops *ops = &pair->spec->responder->contact;
     double *relative = (double *)(uintptr_t)p->relative_velocity;
     const size_t batch = points->shared ? 1 : p->count;
     for (size_t first = 0; first < p->count; first += batch) {
@@ -81,13 +107,36 @@ static ab_status round_over(contact_pair *pair, double *change, double *largest,
             relative[i] = v[0];
             relative[p->ld + i] = v[1];
         }
-        if (ops->respond(pair->responder, p, first, batch) != 0) return complain(pair, &pair->responder_service, "the response", report);
+        if (history) keep_relative_velocity(pair, first, batch, history);
+        else AB_TRY(ask_response(pair, first, batch, report));
         for (size_t i = first; i < first + batch; ++i) {
             *change = fmax(*change, apply(pair, &a, &b, i));
             *largest = fmax(*largest, hypot(p->impulse[i], p->impulse[p->ld + i]));
         }
     }
     return AB_OK;
+}
+
+/* How the dynamic stage has left each point. */
+static void note_history(contact_pair *pair)
+{
+    static const double STUCK = 1e-9; /* slip that an impulse this many times its own size would end */
+    ab_points *p = &pair->points.view;
+    const size_t ld = p->ld;
+    ab_dofs a, b;
+    pair->a->ops->dofs(pair->a, &a);
+    pair->b->ops->dofs(pair->b, &b);
+    double *history = p->state1 + (pair->points.states - HISTORY) * ld;
+    for (size_t i = 0; i < p->count; ++i) {
+        double v[2];
+        relative_velocity(pair, &a, &b, false, i, v);
+        const double nx = p->normal[i], ny = p->normal[ld + i], jx = p->impulse[i], jy = p->impulse[ld + i];
+        const double jt = jy * nx - jx * ny, vt = v[1] * nx - v[0] * ny;
+        const bool pushed = jx != 0.0 || jy != 0.0, stuck = jt != 0.0 && fabs(vt) * p->tangential_mass[i] <= STUCK * fabs(jt);
+        history[HISTORY_STATUS * ld + i] = !pushed ? STATUS_FREE : stuck ? STATUS_STICKS : STATUS_SLIPS;
+        history[HISTORY_NORMAL * ld + i] = v[0] * nx + v[1] * ny;
+        history[HISTORY_TANGENTIAL * ld + i] = vt;
+    }
 }
 
 static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report)
@@ -193,14 +242,21 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
     for (int round = 0; active && round < (again ? MOST_ROUNDS : 1); ++round) {
         double change = 0.0, largest = 0.0;
         for (size_t k = 0; k < all->count; ++k)
-            if (all->pairs[k].points.view.count) AB_TRY(round_over(all->pairs + k, &change, &largest, report));
+            if (all->pairs[k].points.view.count) {
+                const ab_points *p = &all->pairs[k].points.view;
+                const double *rows = all->answered_step == step->number ? p->state1 : p->state0;
+                const double *history = stage == AB_STAGE_KINEMATIC ? rows + (all->pairs[k].points.states - HISTORY) * p->ld : NULL;
+                AB_TRY(round_over(all->pairs + k, history, &change, &largest, report));
+            }
         if (change <= STANDSTILL * largest) break;
     }
     if (stage == AB_STAGE_DYNAMIC)
         for (size_t k = 0; k < all->count; ++k) {
             book(all, k, step);
+            note_history(all->pairs + k);
             contact_points_remember(&all->pairs[k].points);
         }
+    if (stage == AB_STAGE_DYNAMIC) all->answered_step = step->number;
     return AB_OK;
 }
 
@@ -252,7 +308,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
     if (!all) return ab_report_failure(report, "no memory for the contacts");
     all->face = (ab_interaction){destroy, solve, totals, book_body};
     all->scene = scene;
-    all->found_step = -1;
+    all->found_step = all->answered_step = -1;
     all->pairs = calloc(scene->contact_count + 1, sizeof *all->pairs);
     all->totals = calloc(scene->contact_count + 1, sizeof *all->totals);
     all->friction = calloc(scene->body_count + 1, sizeof *all->friction);
@@ -267,6 +323,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         all->count = k + 1;
         pair->points.view.struct_size = sizeof(ab_points);
         pair->points.view.dimension = 2;
+        pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s) pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
         status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
         if (status == AB_OK) status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);

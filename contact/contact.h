@@ -8,13 +8,17 @@
 /* For main: fills the scheduler's table. */
 ab_status contact_create(const ab_scene *, ab_domain **, ab_interaction **, ab_report *);
 
+/* What the loop itself remembers of a point: how it was left by the dynamic stage, and with which relative velocity along and across the normal. */
+enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY };
+enum { STATUS_FREE, STATUS_SLIPS, STATUS_STICKS };
+
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
     ab_points view;             /* what plugins see */
     double *relative_old;       /* relative velocity at the start of the step */
     double *applied;            /* impulse that the dofs have felt already; the loop applies the difference */
     size_t stencil_a, stencil_b; /* capacity of the stencils */
-    size_t states;
+    size_t states;              /* rows of history: the response's, then the loop's own HISTORY rows */
     bool shared;                /* some dof serves more than one point: one point after the other, and again until impulses stand still */
     bool held;                  /* a side holds one direction of some dof: normal and tangential answers act on each other */
     uint64_t *old_key;          /* of the last step, ascending, with their states: history */

@@ -21,7 +21,7 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
 {
     ab_points *v = &points->view;
     if (count > v->capacity || !v->normal) {
-        const size_t old = v->capacity, n = (2 * count + 64) / 8 * 8, s = points->states ? points->states : 1;
+        const size_t old = v->capacity, n = (2 * count + 64) / 8 * 8, s = points->states;
         double *state0 = (double *)(uintptr_t)v->state0, *relative = (double *)(uintptr_t)v->relative_velocity, *mn = (double *)(uintptr_t)v->normal_mass,
                *mt = (double *)(uintptr_t)v->tangential_mass;
         if (!resize(&v->key, 1, 1, old, n, sizeof *v->key) || !resize(&v->normal, 2, 2, old, n, sizeof(double)) || !resize(&v->position, 2, 2, old, n, sizeof(double)) || !resize(&v->gap, 1, 1, old, n, sizeof(double)) ||
@@ -127,7 +127,6 @@ static int compare_remembered(const void *a, const void *b)
 void contact_points_remember(contact_points *points)
 {
     ab_points *v = &points->view;
-    if (!points->states) return;
     remembered *list = malloc((v->count + 1) * sizeof *list);
     if (!list) {
         points->old_count = 0;
@@ -164,6 +163,6 @@ bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_d
     if (shared_a < 0 || shared_b < 0) return false;
     points->shared = shared_a || shared_b;
     points->held = held;
-    if (points->states) recall(points);
+    recall(points);
     return true;
 }

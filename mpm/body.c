@@ -10,6 +10,9 @@
 /* How often a material whose wave speed changes is asked for it, steps. */
 enum { WAVE_SPEED_EVERY = 16 };
 
+/* A thread is worth its waking up from about this many points on. */
+enum { POINTS_PER_THREAD = 4000 };
+
 /* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen): gimp .803 with two, .664 with four points
  * per direction. The linear basis has no positive limit (a point just behind a node); the figure is what it bears in practice. */
 static double stable_courant(const mpm_body *body)
@@ -31,7 +34,6 @@ static void destroy(ab_domain *domain)
     ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
-    ab_memory_give(body->damping_force, body->damping_capacity * 2 * AB_TILE_NODES * sizeof(double));
     mpm_trace_destroy(body->trace);
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
@@ -60,8 +62,6 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     }
     if (!body->scattered) scatter_all(body);
     body->scattered = false;
-    if (step->damping > 0.0 && !ab_memory_grow((void **)&body->damping_force, &body->damping_capacity, body->tile_count, 2 * AB_TILE_NODES * sizeof(double)))
-        return ab_report_failure(report, "body '%s': no memory for damping forces", domain->spec->name);
     if (body->update != MPM_USF) mpm_loads_scatter(body, step);
     mpm_grid_assemble(body, step, body->update != MPM_USF);
     return AB_OK;
@@ -177,19 +177,11 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     return AB_OK;
 }
 
-static void book_damping(mpm_body *body, const ab_step *step)
-{
-    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
-        const double *own = body->own + n * OWN_RECORD, *force = body->damping_force + 2 * n;
-        for (int c = 0; c < 2; ++c) body->energy.damping -= step->dt * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
-    }
-}
-
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report)
 {
     mpm_body *body = (mpm_body *)domain;
+    if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
     mpm_loads_work(body, step);
-    if (step->damping > 0.0) book_damping(body, step);
     const bool remap = body->update == MPM_MUSL;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
@@ -258,7 +250,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p)
         for (int c = 0; c < AB_TILE_NODES; ++c) p->cells += seen[c];
     }
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES + body->patch_capacity * 8 * PATCH_DOUBLES +
-               body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + body->damping_capacity * 16 * AB_TILE_NODES +
+               body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s", body->rows.extent >= 0 ? ", domain extent" : "",
@@ -389,6 +381,8 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
         status = ab_report_error(report, body->material->mark, "material '%s' keeps %d numbers per point; at most %d are possible", body->material->name, body->rows.states, MAX_STATE);
     if (status == AB_OK) status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
+    const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
+    if ((size_t)body->threads > busy) body->threads = (int)busy;
     if (status == AB_OK) status = start_material(body, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
     if (status == AB_OK && wants_birth(body)) {

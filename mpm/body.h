@@ -35,7 +35,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
 
 typedef struct mpm_sums { /* of one tile, one step */
     double mass, kinetic, momentum[2], angular, first[2]; /* first: sum m x */
-    double potential, strain, plastic, damping;           /* increments */
+    double potential, strain, plastic;                    /* increments */
     double low[2], high[2];                               /* bounds of the new positions */
     double speed2;                                        /* largest v.v */
     double wave_speed;                                    /* largest, when asked for */
@@ -100,8 +100,7 @@ struct mpm_body {
     size_t tile_count, tile_capacity;
     double *own;                /* OWN_RECORD * AB_TILE_NODES per tile */
     double *patches;            /* PATCH_DOUBLES per tile with points */
-    double *damping_force;      /* 2 per node, while damping acts; else NULL */
-    size_t own_capacity, patch_capacity, damping_capacity, patch_count;
+    size_t own_capacity, patch_capacity, patch_count;
     mpm_sums *sums;             /* per tile */
     size_t sums_capacity;
     uint64_t version;           /* of the tile list */
@@ -151,6 +150,7 @@ long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);           
 void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);  /* old velocity, trial velocity */
 void mpm_grid_assemble_remap(mpm_body *);                          /* velocity of the points mapped back */
 void mpm_grid_fetch(const mpm_body *, size_t tile, double *velocity, double *change); /* patches of pairs; change may be NULL */
+double mpm_grid_damp(mpm_body *, double factor);                    /* after contact; energy taken, J */
 void mpm_grid_limit_light(mpm_body *);                             /* USL: light nodes take their old velocity for the strain */
 
 /* loads.c */

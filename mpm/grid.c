@@ -37,18 +37,10 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
     }
 }
 
-/* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance; it never turns the velocity round. */
-static double damping_force(double factor, double force, double mass, double velocity, double dt)
-{
-    const double most = fabs(velocity) * mass / dt, wanted = factor * fabs(force);
-    return -copysign(fmin(wanted, most), velocity);
-}
-
 void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
 {
     const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
     const double dt = forces ? step->dt : 0.0;
-    const bool damped = forces && step->damping > 0.0 && body->damping_force;
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
@@ -56,13 +48,11 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
         memset(sum, 0, sizeof sum);
         add_patches(body, tile, 8, sum);
         double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
-        double *damping = damped ? body->damping_force + k * 2 * AB_TILE_NODES : NULL;
         for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
             const double *s = sum + 8 * n;
             const double mass = s[NODE_MASS];
             if (!(mass > 1e-300)) {
                 *(v8 *)own = v8_set(0.0);
-                if (damping) damping[2 * n] = damping[2 * n + 1] = 0.0;
                 continue;
             }
             const double inverse = 1.0 / mass;
@@ -70,12 +60,7 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
             if (tile->held) side_mask(body, tile, n, free_);
             for (int c = 0; c < 2; ++c) {
                 const double old = s[NODE_MOMENTUM + c] * inverse * free_[c];
-                double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
-                if (damping) {
-                    const double extra = damping_force(step->damping, force, mass, old + force * inverse * dt, dt) * free_[c];
-                    damping[2 * n + c] = extra;
-                    force += extra;
-                }
+                const double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
                 own[OWN_OLD + c] = old;
                 own[OWN_VELOCITY + c] = (old + force * inverse * dt) * free_[c];
                 own[OWN_INVERSE + c] = inverse * free_[c];
@@ -130,6 +115,23 @@ void mpm_grid_fetch(const mpm_body *body, size_t number, double *velocity, doubl
         velocity[2 * PATCH_NODES + k] = 0.0;
         if (change) change[2 * PATCH_NODES + k] = 0.0;
     }
+}
+
+/* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance, here all that changed the node's velocity
+ * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Returns the energy taken, J. */
+double mpm_grid_damp(mpm_body *body, double factor)
+{
+    double taken = 0.0;
+    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
+        double *own = body->own + n * OWN_RECORD;
+        for (int c = 0; c < 2; ++c) {
+            const double old = own[OWN_OLD + c], v = own[OWN_VELOCITY + c];
+            const double change = -copysign(fmin(factor * fabs(v - old), fabs(v)), v);
+            own[OWN_VELOCITY + c] = v + change;
+            taken -= own[OWN_MASS] * change * 0.5 * (old + v + change);
+        }
+    }
+    return taken;
 }
 
 /* A node with less than LIGHT of a point's mass is accelerated without bound by a finite stress; its momentum has gone to the points already, so the

@@ -12,7 +12,7 @@ typedef struct multi_velocity {
     int64_t normal; /* -1: fixed direction */
     double direction[3];
     int gap;              /* 0: distance, 1: none */
-    double corner_cosine; /* normals that disagree by more are at a corner */
+    double corner_cosine; /* of the angle beyond which two normals that disagree mean a corner */
 } multi_velocity;
 
 static const ab_param PARAMS[] = {
@@ -20,7 +20,9 @@ static const ab_param PARAMS[] = {
      "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
     {"gap", "1", "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical form: early and lossy)", "distance|none",
      AB_CHOICE, 0, 0, 0, 0},
-    {"corner_angle", "rad", "where the two normals disagree by more than this, the body with the larger area at the node gives the normal (average only)", NULL, AB_REAL, 0, 0.35, 0, 3.2},
+    {"corner_angle", "rad",
+     "corner rule of `average`: where the two normals disagree by more than this, take of both and their average the one along which the bodies are farthest apart", NULL,
+     AB_REAL, 0, 0.35, 0, 3.2},
 };
 
 static int create(const ab_host *host, const ab_value *settings, void **self)
@@ -52,41 +54,6 @@ static double unit(double *v, uint32_t dimension)
     return length;
 }
 
-/* The normal at shared node i, out of a; false where neither body has a direction there (deep inside both). *area: tributary, m2. */
-static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area)
-{
-    const uint32_t d = a->dimension;
-    double na[3] = {0}, nb[3] = {0}, va[3] = {0}, vb[3] = {0};
-    for (uint32_t c = 0; c < d; ++c) {
-        va[c] = na[c] = a->area_vector[c * a->ld + i];
-        vb[c] = nb[c] = b->area_vector[c * b->ld + i];
-    }
-    const double la = unit(na, d), lb = unit(nb, d);
-    n[0] = n[1] = n[2] = 0.0;
-    if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
-    else if (mv->normal == NORMAL_STIFFER) {
-        const int first = a->stiffness >= b->stiffness;
-        for (uint32_t c = 0; c < d; ++c) n[c] = first ? na[c] : -nb[c];
-    } else if (mv->normal == NORMAL_MASS_GRADIENT) {
-        for (uint32_t c = 0; c < d; ++c) n[c] = a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i];
-    } else if (mv->normal == NORMAL_VOLUME_GRADIENT) {
-        for (uint32_t c = 0; c < d; ++c) n[c] = va[c] - vb[c];
-    } else {
-        double cosine = 0.0;
-        for (uint32_t c = 0; c < d; ++c) cosine -= na[c] * nb[c];
-        const int corner = cosine < mv->corner_cosine;
-        for (uint32_t c = 0; c < d; ++c) n[c] = !corner ? na[c] - nb[c] : la >= lb ? na[c] : -nb[c];
-    }
-    if (!(unit(n, d) > 0.0)) return 0;
-    double along_a = 0.0, along_b = 0.0;
-    for (uint32_t c = 0; c < d; ++c) {
-        along_a += va[c] * n[c];
-        along_b -= vb[c] * n[c];
-    }
-    *area = fmax(0.0, fmin(along_a, along_b));
-    return 1;
-}
-
 /* How far the material of a body reaches along +-n from the node: the largest of sign n.(x - x_i) + half size, over the points beside the node (within half
  * a cell across the normal); over all points near it where none is. */
 static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
@@ -113,6 +80,61 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
     return beside > -INFINITY ? beside : all;
 }
 
+/* Distance of the two bodies' material along n at shared node i, m; negative: they overlap. */
+static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) { return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0); }
+
+/* The average of both normals; at a corner (they disagree) the one of the three along which the bodies are farthest apart: the face, not the flank. */
+static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double n[3])
+{
+    const uint32_t d = a->dimension;
+    double cosine = 0.0;
+    for (uint32_t c = 0; c < d; ++c) {
+        cosine -= na[c] * nb[c];
+        n[c] = na[c] - nb[c];
+    }
+    const double length = unit(n, d);
+    if (cosine >= mv->corner_cosine) return;
+    double best = length > 0.0 ? distance(a, b, i, n) : -INFINITY;
+    for (int k = 0; k < 2; ++k) {
+        double other[3] = {0};
+        for (uint32_t c = 0; c < d; ++c) other[c] = k ? -nb[c] : na[c];
+        const double gap = unit(other, d) > 0.0 ? distance(a, b, i, other) : -INFINITY;
+        if (gap <= best) continue;
+        best = gap;
+        memcpy(n, other, sizeof other);
+    }
+}
+
+/* The normal at shared node i, out of a; false where there is none (deep inside both). *area: tributary, m2. */
+static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area)
+{
+    const uint32_t d = a->dimension;
+    double na[3] = {0}, nb[3] = {0}, va[3] = {0}, vb[3] = {0};
+    for (uint32_t c = 0; c < d; ++c) {
+        va[c] = na[c] = a->area_vector[c * a->ld + i];
+        vb[c] = nb[c] = b->area_vector[c * b->ld + i];
+    }
+    unit(na, d);
+    unit(nb, d);
+    n[0] = n[1] = n[2] = 0.0;
+    if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
+    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, n);
+    else
+        for (uint32_t c = 0; c < d; ++c)
+            n[c] = mv->normal == NORMAL_MASS_GRADIENT ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
+                   : mv->normal == NORMAL_VOLUME_GRADIENT ? va[c] - vb[c]
+                   : a->stiffness >= b->stiffness ? na[c]
+                                                  : -nb[c];
+    if (!(unit(n, d) > 0.0)) return 0;
+    double along_a = 0.0, along_b = 0.0;
+    for (uint32_t c = 0; c < d; ++c) {
+        along_a += va[c] * n[c];
+        along_b -= vb[c] * n[c];
+    }
+    *area = fmax(0.0, fmin(along_a, along_b));
+    return 1;
+}
+
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out)
 {
     const multi_velocity *mv = self;
@@ -123,7 +145,7 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
     for (size_t i = 0; i < a->count; ++i) {
         double normal[3], area = 0.0, gap = 0.0;
         if (!node_normal(mv, a, b, i, normal, &area)) continue;
-        if (mv->gap == 0) gap = -reach(a, i, normal, 1.0) - reach(b, i, normal, -1.0);
+        if (mv->gap == 0) gap = distance(a, b, i, normal);
         size_t sa = out->a_start[n], sb = out->b_start[n];
         for (size_t s = a->stencil_start[i]; s < a->stencil_start[i + 1]; ++s, ++sa) {
             out->a_dof[sa] = a->stencil_dof[s];
