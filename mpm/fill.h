@@ -24,7 +24,16 @@ typedef struct ab_fill {
     double low[2], high[2]; /* bounding box of the outline */
 } ab_fill;
 
-/* cell: m, of the background grid; per_cell: points wanted per cell of that size; any number >= 1. */
+/* Fills a shape. cell: m, of the background grid; per_cell: points wanted per cell of that size, any number >= 1. The lattice follows the
+ * outline, not the grid, so that origin (the grid's corner) does not matter to any rule there is.
+ *   regular  box: a lattice whose spacings divide the sides. disc, ring: circles of equal width. polygon: a lattice along its longest edge that stands
+ *            on every straight side along it; cells that the outline cuts have their exact volume and centroid, and one filled less than 0.3 goes
+ *            with its neighbour.
+ *   gauss    Gauss points in lattice cells of about the grid's size (along the radius of a disc or ring); cells that the outline cuts are regular.
+ *   union    members that touch are filled each on its own, and where they touch there is no outline; members that overlap are joined first, where
+ *            a disc becomes a polygon of the same area.
+ * A point of volume V in an uncut cell has an extent of V = 4 sqrt(det A). Sums: volumes and lengths to 1e-12. Wrong shapes and too many
+ * points are errors (AB_BAD_INPUT) before anything is allocated, a shape thinner than half the distance between points a warning. */
 ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
                          ab_fill **fill, ab_report *report);
 void ab_fill_destroy(ab_fill *fill);
