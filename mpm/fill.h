@@ -32,7 +32,7 @@ typedef struct ab_fill {
  *   gauss    Gauss points in lattice cells of about the grid's size (along the radius of a disc or ring); cells that the outline cuts are regular.
  *   union    members that touch are filled each on its own, and where they touch there is no outline; members that overlap are joined first, where
  *            a disc becomes a polygon of the same area.
- * A point of volume V in an uncut cell has an extent of V = 4 sqrt(det A). Sums: volumes and lengths to 1e-12. Wrong shapes and too many
+ * A regular point of volume V in an uncut cell has V = 4 sqrt(det A). Sums: volumes and lengths to 1e-12. Wrong shapes and too many
  * points are errors (AB_BAD_INPUT) before anything is allocated, a shape thinner than half the distance between points a warning. */
 ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
                          ab_fill **fill, ab_report *report);
