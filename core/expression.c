@@ -28,12 +28,15 @@ struct ab_formulas {
     size_t constant_count;
     ab_expression *expressions[AB_FORMULA_COUNT];
     size_t expression_count;
+    long work; /* spent so far, in characters */
 };
 
 static const char *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "atan2",
                                         "log2", "log10", "log", "ln", "exp", "sqrt", "sign", "rint", "abs", "sum", "avg", "min", "max"};
 static const char *const variables_all[] = {"t", "x", "y", "z"};
 static const char *const words[] = {"true", "false", "yes", "no", "on", "off", "null", "inf", "nan", "infinity", "_pi", "_e"};
+
+enum { WORK_EACH = 40, WORK_MISTAKE = 5000 }; /* what a formula and a mistake cost besides their characters */
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -78,6 +81,8 @@ void ab_formulas_destroy(ab_formulas *formulas) {
     free(formulas);
 }
 
+bool ab_formulas_exhausted(const ab_formulas *formulas) { return formulas->work > AB_FORMULA_WORK; }
+
 bool ab_formulas_name_ok(const ab_formulas *formulas, const char *name, char *why, size_t why_size) {
     why[0] = '\0';
     if (strlen(name) > AB_FORMULA_NAME) {
@@ -121,8 +126,9 @@ static const char *here(unsigned variables) {
     return variables == AB_NO_VARIABLE ? "only constants are known here" : "only t, x, y and constants are known here";
 }
 
-static ab_status explain(const ab_formulas *formulas, unsigned variables, char *why, size_t size) {
+static ab_status explain(ab_formulas *formulas, unsigned variables, char *why, size_t size) {
     muParserHandle_t parser = formulas->bench.parser;
+    formulas->work += WORK_MISTAKE;
     const char *message = mupGetErrorMsg(parser);
     char token[AB_FORMULA_NAME + 1] = "", text[300], tail[1024];
     snprintf(text, sizeof text, "%.*s", (int)sizeof text - 1, message == NULL ? "not a formula" : message);
@@ -184,6 +190,11 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
     }
     if (has_assignment(text) || strchr(text, '"') != NULL) {
         snprintf(why, why_size, "a formula gives one number; '=' and quotes have no place in it (compare with ==)");
+        return AB_BAD_INPUT;
+    }
+    formulas->work += WORK_EACH + (long)strlen(text);
+    if (ab_formulas_exhausted(formulas)) {
+        snprintf(why, why_size, "there are too many formulas in this scene, or too many mistakes in them");
         return AB_BAD_INPUT;
     }
     muParserHandle_t bench = formulas->bench.parser;

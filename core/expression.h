@@ -21,7 +21,7 @@ static inline bool ab_number_is_constant(const ab_number *number) { return numbe
 /* Variables that a formula may use. */
 enum ab_variables { AB_NO_VARIABLE = 0, AB_VARIABLE_T = 1, AB_VARIABLE_X = 2, AB_VARIABLE_Y = 4, AB_VARIABLES_XY = 6 };
 
-enum ab_formula_limits { AB_FORMULA_TEXT = 2000, AB_FORMULA_NAME = 64, AB_FORMULA_CONSTANTS = 256, AB_FORMULA_COUNT = 1000 };
+enum ab_formula_limits { AB_FORMULA_TEXT = 2000, AB_FORMULA_NAME = 64, AB_FORMULA_CONSTANTS = 256, AB_FORMULA_COUNT = 1000, AB_FORMULA_WORK = 2000000 };
 
 /* The constants of a scene and every formula compiled with them. pi and e are there from the start. */
 typedef struct ab_formulas ab_formulas;
@@ -29,13 +29,17 @@ typedef struct ab_formulas ab_formulas;
 ab_formulas *ab_formulas_create(void); /* NULL: no memory */
 void ab_formulas_destroy(ab_formulas *formulas);
 
+/* True when AB_FORMULA_WORK is spent: every further formula is refused. */
+bool ab_formulas_exhausted(const ab_formulas *formulas);
+
 /* True when a constant may have this name; else `why` says what is wrong. */
 bool ab_formulas_name_ok(const ab_formulas *formulas, const char *name, char *why, size_t why_size);
 /* Adds a constant. The name must be ok. */
 ab_status ab_formulas_define(ab_formulas *formulas, const char *name, double value);
 
 /* Compiles a formula. `number` becomes a constant when no variable is used in it. On AB_BAD_INPUT `why` has the cause and the remedy,
- * without the place. A constant that is not finite is refused. */
+ * without the place. A constant that is not finite is refused. A scene may spend AB_FORMULA_WORK characters on formulas in all, aliases
+ * written out, so that a hostile file cannot take hours. */
 ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned variables, ab_number *number, char *why, size_t why_size);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MOST_SPLITS = 24 };
+enum { MOST_SPLITS = 24, MOST_LOOKED = 400 };
 
 /* Characters of a decimal number at the front: [+-] digits [. digits] [e [+-] digits]; 0 when there is none. */
 static size_t number_length(const char *text) {
@@ -94,12 +94,12 @@ static ab_status with_unit(ab_units *units, const char *unit, const char *wanted
 /* "FORMULA UNIT": the first blank where both halves can be read. AB_MISSED: no such place. */
 static ab_status split_formula(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables, ab_number *number, char *why, size_t size) {
     char left[AB_FORMULA_TEXT + 1], reason[512];
-    if (strlen(text) > AB_FORMULA_TEXT) return AB_MISSED;
-    int tried = 0;
-    for (const char *c = text; *c != '\0' && tried < MOST_SPLITS; c++) {
+    if (strlen(text) > AB_FORMULA_TEXT || ab_formulas_exhausted(formulas)) return AB_MISSED;
+    int tried = 0, looked = 0;
+    for (const char *c = text; *c != '\0' && tried < MOST_SPLITS && looked < MOST_LOOKED; c++) {
         if (*c != ' ' || c == text) continue;
         const char *rest = c + strspn(c, " ");
-        if (!may_begin_unit(rest) || !ab_units_known(units, rest)) continue;
+        if (!may_begin_unit(rest) || ++looked > MOST_LOOKED || !ab_units_known(units, rest)) continue;
         memcpy(left, text, (size_t)(c - text));
         left[c - text] = '\0';
         tried++;

@@ -63,12 +63,12 @@ static size_t file_order(ab_report *report, const char *file) {
 
 /* Appends one line; a line that is there already (same place, same text) is not said twice. True when it is new. */
 static bool keep(ab_report *report, ab_mark mark, const char *text) {
-    for (size_t i = 0; i < report->count; i++)
-        if (strcmp(report->lines[i].text, text) == 0) return false;
     if (report->count >= MOST_LINES) {
         report->dropped++;
         return true;
     }
+    for (size_t i = 0; i < report->count; i++)
+        if (strcmp(report->lines[i].text, text) == 0) return false;
     if (report->count == report->capacity) {
         const size_t capacity = report->capacity == 0 ? 16 : report->capacity * 2;
         line *lines = realloc(report->lines, capacity * sizeof *lines);

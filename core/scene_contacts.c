@@ -5,7 +5,7 @@
 #include "core/scene_reader.h"
 #include "core/settings.h"
 
-enum { MOST_CONTACTS = 10000, MOST_NAMES = 256, MOST_WARNINGS = 20 };
+enum { MOST_CONTACTS = 10000, MOST_NAMES = 256, MOST_ENTRIES = 1000, MOST_WARNINGS = 20 };
 
 typedef struct pairs { /* who meets whom so far: 1 + place in the list of the scene; 0: nobody */
     uint32_t *entry;
@@ -115,7 +115,11 @@ static void warn_strangers(ab_scene_reader *r, pairs *all) {
 void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
     ab_scene *scene = r->scene;
     const size_t bodies = scene->body_count;
-    const size_t entries = node != NULL && node->kind == AB_NODE_LIST ? node->count : 0;
+    size_t entries = node != NULL && node->kind == AB_NODE_LIST ? node->count : 0;
+    if (entries > MOST_ENTRIES) {
+        ab_report_error(r->base.report, node->mark, "contact has %zu entries, more than %d; bodies: all stands for every pair", entries, MOST_ENTRIES);
+        entries = 0;
+    }
     size_t room = bodies * (bodies > 0 ? bodies - 1 : 0) / 2;
     if (room > MOST_CONTACTS) room = MOST_CONTACTS;
     pairs all = {ab_reader_take(&r->base, bodies * bodies, sizeof(uint32_t)), bodies};
@@ -151,6 +155,10 @@ static void take_load(ab_scene_reader *r, const ab_node *node, const char *where
 void ab_scene_take_loads(ab_scene_reader *r, const ab_node *node) {
     ab_scene *scene = r->scene;
     if (node == NULL || !ab_scene_is_list(r, node, "loads", "entries - {body: ..., where: ..., traction: ...}")) return;
+    if (node->count > MOST_ENTRIES) {
+        ab_report_error(r->base.report, node->mark, "loads has %zu entries, more than %d", node->count, MOST_ENTRIES);
+        return;
+    }
     scene->loads = ab_reader_take(&r->base, node->count, sizeof *scene->loads);
     if (scene->loads == NULL) return;
     scene->load_count = node->count;

@@ -88,6 +88,8 @@ void ab_scene_take_history(ab_scene_reader *r, const ab_node *node) {
     ab_read_integer(&r->base, &ab_section_history.keys[HISTORY_EVERY], v[HISTORY_EVERY], "history", &r->scene->history_every);
 }
 
+enum { MOST_FIELDS = 64 };
+
 static bool field_known(ab_scene_reader *r, const ab_node *node, const char *where) {
     enum { MOST = 256 };
     if (ab_words_find(&ab_words_fields, node->text) != NULL || strcmp(node->text, "position") == 0 || ab_scene_state_named(r->scene, SIZE_MAX, node->text) != NULL) return true;
@@ -106,6 +108,10 @@ static bool field_known(ab_scene_reader *r, const ab_node *node, const char *whe
 static void take_fields(ab_scene_reader *r, const ab_node *node) {
     ab_scene *scene = r->scene;
     if (!ab_scene_is_list(r, node, "output.fields", "field names")) return;
+    if (node->count > MOST_FIELDS) {
+        ab_report_error(r->base.report, node->mark, "output.fields has %zu names, more than %d", node->count, MOST_FIELDS);
+        return;
+    }
     scene->output_fields = ab_reader_take(&r->base, node->count, sizeof *scene->output_fields);
     if (scene->output_fields == NULL) return;
     for (size_t i = 0; i < node->count; i++) {
@@ -120,10 +126,6 @@ static void take_fields(ab_scene_reader *r, const ab_node *node) {
         } else if (strcmp(name, "position") != 0) { /* always written */
             scene->output_fields[scene->output_field_count] = ab_reader_text(&r->base, name);
             if (scene->output_fields[scene->output_field_count] != NULL) scene->output_field_count++;
-        }
-        if (scene->output_field_count >= 64) {
-            ab_report_error(r->base.report, node->mark, "output.fields has more than 64 names");
-            return;
         }
     }
 }

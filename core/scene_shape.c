@@ -4,7 +4,7 @@
 
 #include "core/scene_reader.h"
 
-enum { MOST_CORNERS = 4000, MOST_MEMBERS = 1000 };
+enum { MOST_CORNERS = 2000, MOST_MEMBERS = 1000 };
 
 static bool refuse(ab_scene_reader *r, ab_mark mark, const char *where, const char *why) {
     ab_report_error(r->base.report, mark, "%s: %s", where, why);

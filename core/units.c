@@ -6,11 +6,12 @@
 #include <string.h>
 #include <udunits2.h>
 
-enum { LONGEST_UNIT = 60 };
+enum { LONGEST_UNIT = 60, MOST_CONVERSIONS = 50000 }; /* the latter: a hostile file must not take hours */
 
 struct ab_units {
     ut_system *system;
     bool tried;
+    long conversions;
 };
 
 ab_units *ab_units_create(void) { return calloc(1, sizeof(ab_units)); }
@@ -93,6 +94,10 @@ ab_status ab_units_factor(ab_units *units, const char *unit, const char *wanted,
     if (wanted != NULL && strcmp(unit, wanted) == 0) return AB_OK;
     if (!open_system(units)) {
         snprintf(why, why_size, "the unit database of UDUNITS-2 cannot be read (package libudunits2-data); write the value in SI without a unit");
+        return AB_BAD_INPUT;
+    }
+    if (++units->conversions > MOST_CONVERSIONS) {
+        snprintf(why, why_size, "more than %d values with units; write this one in SI", MOST_CONVERSIONS);
         return AB_BAD_INPUT;
     }
     ut_unit *from = parsed(units, unit);

@@ -146,12 +146,26 @@ static void test_limits_hold(void **state) {
     ab_formulas_destroy(formulas);
 }
 
+static void test_work_on_formulas_is_bounded(void **state) {
+    (void)state;
+    ab_formulas *formulas = ab_formulas_create();
+    ab_number number;
+    char why[400];
+    int count = 0;
+    while (ab_formulas_compile(formulas, "1+1", 0, &number, why, sizeof why) == AB_OK && count < 1000000) count++;
+    assert_true(count > 20000 && count < 1000000);
+    assert_true(ab_formulas_exhausted(formulas));
+    assert_non_null(strstr(why, "too many formulas"));
+    ab_formulas_destroy(formulas);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_each_text_is_read_or_refused_with_its_cause),
         cmocka_unit_test(test_formulas_keep_apart),
         cmocka_unit_test(test_names_of_constants_that_mean_something_are_refused),
         cmocka_unit_test(test_limits_hold),
+        cmocka_unit_test(test_work_on_formulas_is_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
