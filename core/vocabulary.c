@@ -14,7 +14,9 @@
         {"energy.boundary", "J", "taken away by sides of the grid so far"},                           \
         {"energy.damping", "J", "taken away by local damping so far"},                                \
         {"energy.external", "J", "work of tractions so far"},                                         \
-        {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, {"energy.total", "J", "sum of the ledger"}
+        {"energy.outflow", "J", "carried out by points that left so far"},                            \
+        {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, \
+        {"energy.total", "J", "kinetic + strain + potential"}
 
 #define MOMENTUM_WORDS                                                                                       \
     {"mass", "kg", "mass (per m of thickness)"}, {"momentum.x", "kg m s-1", "linear momentum along x"},      \
