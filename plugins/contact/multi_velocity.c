@@ -12,7 +12,7 @@ typedef struct multi_velocity {
     int64_t normal; /* -1: fixed direction */
     double direction[3];
     int gap;              /* 0: distance, 1: none */
-    double corner_cosine; /* of the angle beyond which two normals that disagree mean a corner */
+    double corner_cosine; /* of the angle beyond which the corner rule looks at two normals */
 } multi_velocity;
 
 static const ab_param PARAMS[] = {
@@ -20,9 +20,8 @@ static const ab_param PARAMS[] = {
      "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
     {"gap", "1", "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical form: early and lossy)", "distance|none",
      AB_CHOICE, 0, 0, 0, 0},
-    {"corner_angle", "rad",
-     "corner rule of `average`: where the two normals disagree by more than this, take of both and their average the one along which the bodies are farthest apart", NULL,
-     AB_REAL, 0, 0.35, 0, 3.2},
+    {"corner_angle", "rad", "corner rule of `average`: where the normals disagree by more than this and only one body has a face at the node (the other an edge), the face's normal is taken", NULL,
+     AB_REAL, 0, 0.02, 0.0, 3.2},
 };
 
 static int create(const ab_host *host, const ab_value *settings, void **self)
@@ -54,6 +53,17 @@ static double unit(double *v, uint32_t dimension)
     return length;
 }
 
+/* Half size of near point k in direction n: sqrt(n.A.n). */
+static double half_size(const ab_trace *t, size_t k, const double n[3])
+{
+    const double *e = t->near_extent + k;
+    const size_t ld = t->near_ld;
+    const double square = t->dimension == 2 ? n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]
+                                            : n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + n[2] * n[2] * e[2 * ld] +
+                                                  2.0 * (n[0] * n[1] * e[3 * ld] + n[1] * n[2] * e[4 * ld] + n[2] * n[0] * e[5 * ld]);
+    return sqrt(fmax(square, 0.0));
+}
+
 /* How far the material of a body reaches along +-n from the node: the largest of sign n.(x - x_i) + half size, over the points beside the node (within half
  * a cell across the normal); over all points near it where none is. */
 static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
@@ -68,11 +78,7 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
             along += r * n[c];
             square += r * r;
         }
-        const double *e = t->near_extent + k;
-        const double half2 = d == 2 ? n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]
-                                    : n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + n[2] * n[2] * e[2 * ld] +
-                                          2.0 * (n[0] * n[1] * e[3 * ld] + n[1] * n[2] * e[4 * ld] + n[2] * n[0] * e[5 * ld]);
-        const double far = sign * along + sqrt(fmax(half2, 0.0));
+        const double far = sign * along + half_size(t, k, n);
         const double across2 = square - along * along;
         if (far > all) all = far;
         if (across2 <= 0.25 * t->cell * t->cell && far > beside) beside = far;
@@ -83,8 +89,41 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
 /* Distance of the two bodies' material along n at shared node i, m; negative: they overlap. */
 static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) { return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0); }
 
-/* The average of both normals; at a corner (they disagree) the one of the three along which the bodies are farthest apart: the face, not the flank. */
-static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double n[3])
+/* True where a body's outline is no face across n at node i, so that its gradient is no normal: the node lies deep inside (the gradient is noise), the
+ * outline ends within a cell to one side, or it falls away by more than a quarter of a cell on the average of both sides (an edge). */
+static int is_corner(const ab_trace *t, size_t i, const double n[3], double area)
+{
+    static const double DEEP = 0.1, FALL = 0.25, ENDS = 0.95;
+    const uint32_t d = t->dimension;
+    const size_t ld = t->near_ld;
+    const double h = t->cell;
+    double volume = 0.0;
+    for (uint32_t c = 0; c < d; ++c) volume = fmax(volume, fabs(t->mass_gradient[c * t->ld + i]));
+    volume = volume > 0.0 ? t->mass[i] * area / volume : INFINITY; /* mass over density, density = mass gradient over area, up to its direction */
+    double cell_area = h;
+    for (uint32_t c = 2; c < d; ++c) cell_area *= h;
+    if (area * h < DEEP * fmin(volume, cell_area * h)) return 1;
+    double middle = -INFINITY, side[2] = {-INFINITY, -INFINITY};
+    const double across[3] = {-n[1], n[0], 0.0};
+    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+        double along = 0.0, beside = 0.0;
+        for (uint32_t c = 0; c < d; ++c) {
+            const double r = t->near_position[c * ld + k] - t->position[c * t->ld + i];
+            along += r * n[c];
+            beside += r * across[c];
+        }
+        const double half = half_size(t, k, n), reach_ = along + half;
+        const double width = half_size(t, k, across);
+        if (fabs(beside) <= 0.5 * h && reach_ > middle) middle = reach_;
+        if (beside + width >= ENDS * h && reach_ > side[1]) side[1] = reach_;
+        if (beside - width <= -ENDS * h && reach_ > side[0]) side[0] = reach_;
+    }
+    if (side[0] == -INFINITY || side[1] == -INFINITY) return 1;
+    return middle - 0.5 * (side[0] + side[1]) > FALL * h;
+}
+
+/* The average of both normals; where they disagree and only one body has a face there, that body's: the face's normal, not the edge's. */
+static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double la, double lb, double n[3])
 {
     const uint32_t d = a->dimension;
     double cosine = 0.0;
@@ -92,20 +131,15 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
         cosine -= na[c] * nb[c];
         n[c] = na[c] - nb[c];
     }
-    const double length = unit(n, d);
     if (cosine >= mv->corner_cosine) return;
-    double best = length > 0.0 ? distance(a, b, i, n) : -INFINITY;
-    for (int k = 0; k < 2; ++k) {
-        double other[3] = {0};
-        for (uint32_t c = 0; c < d; ++c) other[c] = k ? -nb[c] : na[c];
-        const double gap = unit(other, d) > 0.0 ? distance(a, b, i, other) : -INFINITY;
-        if (gap <= best) continue;
-        best = gap;
-        memcpy(n, other, sizeof other);
-    }
+    const int corner_a = is_corner(a, i, na, la), corner_b = is_corner(b, i, nb, lb);
+    if (corner_a == corner_b) return;
+    for (uint32_t c = 0; c < d; ++c) n[c] = corner_a ? -nb[c] : na[c];
 }
 
-/* The normal at shared node i, out of a; false where there is none (deep inside both). *area: tributary, m2. */
+static const double LEAST_AREA = 1e-3; /* of a cell's face */
+
+/* The normal at shared node i, out of a; false where there is no contact to speak of. *area: tributary, m2. */
 static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area)
 {
     const uint32_t d = a->dimension;
@@ -114,11 +148,10 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         va[c] = na[c] = a->area_vector[c * a->ld + i];
         vb[c] = nb[c] = b->area_vector[c * b->ld + i];
     }
-    unit(na, d);
-    unit(nb, d);
+    const double la = unit(na, d), lb = unit(nb, d);
     n[0] = n[1] = n[2] = 0.0;
     if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
-    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, n);
+    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, la, lb, n);
     else
         for (uint32_t c = 0; c < d; ++c)
             n[c] = mv->normal == NORMAL_MASS_GRADIENT ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
@@ -131,8 +164,10 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         along_a += va[c] * n[c];
         along_b -= vb[c] * n[c];
     }
-    *area = fmax(0.0, fmin(along_a, along_b));
-    return 1;
+    *area = fmin(along_a, along_b);
+    double face = 1.0;
+    for (uint32_t c = 1; c < d; ++c) face *= a->cell;
+    return *area > LEAST_AREA * face; /* less: one body only just reaches the node, and has nothing to say there */
 }
 
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out)
