@@ -3,11 +3,17 @@
 #define AB_VECTOR_H
 
 #include <stdint.h>
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 
 typedef double v8 __attribute__((vector_size(64)));
 typedef double v8_loose __attribute__((vector_size(64), aligned(8))); /* for loads from any double */
 typedef double v4 __attribute__((vector_size(32)));
 typedef double v4_loose __attribute__((vector_size(32), aligned(8)));
+typedef double v2 __attribute__((vector_size(16)));
+typedef double v2_loose __attribute__((vector_size(16), aligned(8)));
+typedef int32_t v8_int __attribute__((vector_size(32)));
 typedef int64_t v8_mask __attribute__((vector_size(64)));
 
 static inline v8 v8_set(double a) { return (v8){a, a, a, a, a, a, a, a}; }
@@ -17,10 +23,36 @@ static inline v4 v4_load(const double *p) { return *(const v4_loose *)p; }
 static inline void v8_store(double *p, v8 a) { *(v8_loose *)p = a; }
 static inline void v4_store(double *p, v4 a) { *(v4_loose *)p = a; }
 static inline v8 v8_select(v8_mask c, v8 a, v8 b) { return (v8)((c & (v8_mask)a) | (~c & (v8_mask)b)); }
-static inline v8 v8_min(v8 a, v8 b) { return v8_select(a < b, a, b); }
-static inline v8 v8_max(v8 a, v8 b) { return v8_select(a > b, a, b); }
+static inline v8 v8_min(v8 a, v8 b)
+{
+#if defined(__AVX512F__)
+    return (v8)_mm512_min_pd((__m512d)a, (__m512d)b);
+#else
+    return v8_select(a < b, a, b);
+#endif
+}
+static inline v8 v8_max(v8 a, v8 b)
+{
+#if defined(__AVX512F__)
+    return (v8)_mm512_max_pd((__m512d)a, (__m512d)b);
+#else
+    return v8_select(a > b, a, b);
+#endif
+}
+/* Lanes whose bit is set in `bits` take *b, the others *a. */
+#if defined(__AVX512F__)
+#define v8_two(a, b, bits) ((v8)_mm512_mask_broadcastsd_pd(_mm512_set1_pd(*(a)), (bits), _mm_load_sd(b)))
+#else
+#define V8_LANE(bits, l) ((bits) >> (l) & 1 ? 8 + (l) : (l))
+#define v8_two(a, b, bits)                                                                                                                             \
+    __builtin_shufflevector(v8_set(*(a)), v8_set(*(b)), V8_LANE(bits, 0), V8_LANE(bits, 1), V8_LANE(bits, 2), V8_LANE(bits, 3), V8_LANE(bits, 4), \
+                            V8_LANE(bits, 5), V8_LANE(bits, 6), V8_LANE(bits, 7))
+#endif
 static inline v8 v8_floor(v8 a) /* |a| < 2^51 */
 {
+#if defined(__AVX512F__)
+    return (v8)_mm512_roundscale_pd((__m512d)a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+#endif
     const v8 magic = v8_set(0x1.8p52);
     const v8 nearest = (a + magic) - magic;
     return nearest - v8_select(nearest > a, v8_set(1.0), v8_set(0.0));
@@ -41,6 +73,8 @@ static inline double v8_highest(v8 a)
     for (int l = 1; l < 8; ++l) m = a[l] > m ? a[l] : m;
     return m;
 }
+static inline v2 v2_load(const double *p) { return *(const v2_loose *)p; }
+static inline void v2_store(double *p, v2 a) { *(v2_loose *)p = a; }
 static inline v8 v8_join(v4 low, v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
 static inline v4 v8_low(v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 static inline v4 v8_high(v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }

@@ -101,14 +101,14 @@ void mpm_grid_fetch(const mpm_body *body, size_t number, double *velocity, doubl
                 continue;
             }
             const double *own = body->own + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * OWN_RECORD;
-            for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
-                velocity[at + 2 * i] = own[OWN_VELOCITY];
-                velocity[at + 2 * i + 1] = own[OWN_VELOCITY + 1];
-                if (change) {
-                    change[at + 2 * i] = own[OWN_VELOCITY] - own[OWN_OLD];
-                    change[at + 2 * i + 1] = own[OWN_VELOCITY + 1] - own[OWN_OLD + 1];
+            if (change)
+                for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
+                    const v2 now = v2_load(own + OWN_VELOCITY);
+                    v2_store(velocity + at + 2 * i, now);
+                    v2_store(change + at + 2 * i, now - v2_load(own + OWN_OLD));
                 }
-            }
+            else
+                for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) v2_store(velocity + at + 2 * i, v2_load(own + OWN_VELOCITY));
         }
     }
     for (int k = 0; k < 8; ++k) {

@@ -115,6 +115,7 @@ typedef struct ab_host {
 enum ab_needs { /* what a class asks for; what nobody asks for is not computed and arrives as NULL */
     AB_NEED_DEFORMATION_GRADIENT = 1u,
     AB_NEED_VELOCITY_GRADIENT = 2u,
+    AB_NEED_DENSITY = 4u,
     /* contact finders */
     AB_NEED_SHARED_NODES = 16u,
     AB_NEED_MASS_GRADIENT = 32u,
@@ -136,7 +137,7 @@ typedef struct ab_batch {
     uint32_t components; /* of stress: 4 or 6 */
     size_t count, ld;
     double time, dt;     /* s; in start: dt = 0 */
-    const double *density;              /* kg/m3, current; count */
+    const double *density;              /* kg/m3, current; count; when needed or when wave_speed is asked for; else NULL */
     const double *strain_increment;     /* components rows; engineering shear; objective (rigid rotation taken out) */
     const double *deformation_gradient; /* at the end of the step, when needed; else NULL */
     const double *velocity_gradient;    /* 1/s, when needed; else NULL */
