@@ -87,12 +87,14 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
                                  body->service.message[0] ? body->service.message : "no reason given");
     }
     double fastest = 0.0;
+    body->last_strain = 0.0;
     for (size_t k = 0; k < body->tile_count; ++k) {
         if (body->tiles[k].patch < 0) continue;
-        body->energy.strain += body->sums[k].strain;
+        body->last_strain += body->sums[k].strain;
         body->energy.plastic += body->sums[k].plastic;
         fastest = fmax(fastest, body->sums[k].wave_speed);
     }
+    body->energy.strain += body->last_strain;
     if (body->ask_wave_speed && fastest > 0.0) body->wave_speed = fastest;
     return AB_OK;
 }
@@ -212,10 +214,13 @@ static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *repor
     return AB_OK;
 }
 
+/* Velocities and stresses are half a step apart (the scheme is a leap-frog): stresses are ahead when they are updated last and behind when they are
+ * updated first. Half of the last increment brings the strain energy to the time of the kinetic one; without it their sum sways with w dt/2. */
 static void ledger(const ab_domain *domain, ab_energy *energy, ab_motion *motion)
 {
     const mpm_body *body = (const mpm_body *)domain;
     *energy = body->energy;
+    energy->strain += (body->update == MPM_USF ? 0.5 : -0.5) * body->last_strain;
     *motion = body->motion;
 }
 

@@ -123,6 +123,7 @@ struct mpm_body {
     uint32_t *slot;             /* by id, block*8 + lane; only with loads */
 
     ab_energy energy;           /* totals so far */
+    double last_strain;         /* J: what the last step added to energy.strain */
     ab_motion motion;
 
     ab_field *fields;           /* that can be written */
