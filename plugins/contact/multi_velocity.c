@@ -122,7 +122,9 @@ static int is_corner(const ab_trace *t, size_t i, const double n[3], double area
     return middle - 0.5 * (side[0] + side[1]) > FALL * h;
 }
 
-/* The average of both normals; where they disagree and only one body has a face there, that body's: the face's normal, not the edge's. */
+/* The average of both normals. Where they disagree and only one body has a face there, that body's: the face's normal, not the edge's. Where both have an
+ * edge (bars end to end, blocks corner to corner), the gradient of the share of mass: m_b grad m_a - m_a grad m_b. What both bodies' edges have in
+ * common, as the sides of two flush bars or a wall beside them, cancels in it exactly however far each body reaches. */
 static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double la, double lb, double n[3])
 {
     const uint32_t d = a->dimension;
@@ -133,8 +135,9 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     }
     if (cosine >= mv->corner_cosine) return;
     const int corner_a = is_corner(a, i, na, la), corner_b = is_corner(b, i, nb, lb);
-    if (corner_a == corner_b) return;
-    for (uint32_t c = 0; c < d; ++c) n[c] = corner_a ? -nb[c] : na[c];
+    for (uint32_t c = 0; c < d; ++c)
+        if (corner_a && corner_b) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
+        else if (corner_a || corner_b) n[c] = corner_a ? -nb[c] : na[c];
 }
 
 static const double LEAST_AREA = 1e-3; /* of a cell's face */
