@@ -39,6 +39,15 @@ static inline v8 v8_max(v8 a, v8 b)
     return v8_select(a > b, a, b);
 #endif
 }
+/* a < b ? x : y, lane by lane. */
+static inline v8 v8_less(v8 a, v8 b, v8 x, v8 y)
+{
+#if defined(__AVX512F__)
+    return (v8)_mm512_mask_blend_pd(_mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ), (__m512d)y, (__m512d)x);
+#else
+    return v8_select(a < b, x, y);
+#endif
+}
 /* Lanes whose bit is set in `bits` take *b, the others *a. */
 #if defined(__AVX512F__)
 #define v8_two(a, b, bits) ((v8)_mm512_mask_broadcastsd_pd(_mm512_set1_pd(*(a)), (bits), _mm_load_sd(b)))
@@ -78,6 +87,9 @@ static inline void v2_store(double *p, v2 a) { *(v2_loose *)p = a; }
 static inline v8 v8_join(v4 low, v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
 static inline v4 v8_low(v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
 static inline v4 v8_high(v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
+
+/* Makes the compiler take an array it has just stored from memory again: a broadcast from memory is free, one from a register's lane costs two shuffles. */
+#define V8_IN_MEMORY(array) __asm__("" : "+m"(array))
 
 /* Rows become columns: between eight points' component c and one point's eight components. */
 static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])

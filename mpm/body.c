@@ -236,24 +236,38 @@ static void dofs(const ab_domain *domain, ab_dofs *d)
     *d = (ab_dofs){body->own + OWN_VELOCITY, body->own + OWN_OLD, body->own + OWN_INVERSE, OWN_RECORD, OWN_RECORD, OWN_RECORD};
 }
 
+static int compare_cells(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Cells of the grid with points in them. Points come sorted by the first node of their stencil, so equal cells mostly follow each other. */
+static size_t count_cells(const mpm_body *body)
+{
+    uint64_t *cells = malloc((body->points + 1) * sizeof *cells);
+    if (!cells) return 0;
+    size_t n = 0;
+    for (size_t slot = 0; slot < body->block_count * 8; ++slot) {
+        if (body->ids[slot] == UINT64_MAX) continue;
+        const double *x = mpm_block(body, slot / 8) + 8 * ROW_X + slot % 8;
+        const uint64_t key = ab_tile_key((int32_t)floor(x[0] * body->inverse_h), (int32_t)floor(x[8] * body->inverse_h));
+        if (n == 0 || cells[n - 1] != key) cells[n++] = key;
+    }
+    qsort(cells, n, sizeof *cells, compare_cells);
+    size_t unique = 0;
+    for (size_t k = 0; k < n; ++k) unique += k == 0 || cells[k] != cells[k - 1];
+    free(cells);
+    return unique;
+}
+
 static void plan(const ab_domain *domain, ab_plan_body *p)
 {
     const mpm_body *body = (const mpm_body *)domain;
     memset(p, 0, sizeof *p);
     p->points = body->points;
     p->tiles = body->tile_count;
-    for (size_t n = 0; n < body->patch_count; ++n) p->cells += 0;
-    for (size_t k = 0; k < body->tile_count; ++k) {
-        bool seen[AB_TILE_NODES] = {false};
-        const mpm_tile *tile = body->tiles + k;
-        for (size_t slot = (size_t)tile->first * 8; slot < (size_t)(tile->first + tile->blocks) * 8; ++slot) {
-            if (body->ids[slot] == UINT64_MAX) continue;
-            const double *x = mpm_block(body, slot / 8) + 8 * ROW_X + slot % 8;
-            const int i = (int)floor(x[0] * body->inverse_h), j = (int)floor(x[8] * body->inverse_h);
-            seen[(size_t)(((j % AB_TILE + AB_TILE) % AB_TILE) * AB_TILE + (i % AB_TILE + AB_TILE) % AB_TILE)] = true;
-        }
-        for (int c = 0; c < AB_TILE_NODES; ++c) p->cells += seen[c];
-    }
+    p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES + body->patch_capacity * 8 * PATCH_DOUBLES +
                body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + sizeof *body;
@@ -285,50 +299,6 @@ static const ab_domain_ops OPS_MUSL = {
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .remap = remap, .stress = stress, .ledger = ledger,
     .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
 };
-
-/* The material before the first step: initial states, initial stress where it has one, wave speed. */
-static ab_status start_material(mpm_body *body, ab_report *report)
-{
-    const ab_loaded_class *loaded = body->material->loaded;
-    char who[96];
-    snprintf(who, sizeof who, "material '%s' (%s)", body->material->name, loaded->class_.name);
-    ab_service_init(&body->service, who);
-    if (loaded->class_.create && loaded->class_.create(&body->service.host, body->material->settings, &body->self) != 0)
-        return ab_report_error(report, body->material->mark, "material '%s' refused its settings: %s", body->material->name, body->service.message[0] ? body->service.message : "no reason given");
-    const mpm_rows rows = body->rows;
-    double zero[9][8] __attribute__((aligned(64))) = {{0}}, unit[5][8] __attribute__((aligned(64))) = {{0}}, density[8], speed[8], dissipation[8];
-    double stress1[4][8] __attribute__((aligned(64))), state0[MAX_STATE][8] __attribute__((aligned(64))), state1[MAX_STATE][8] __attribute__((aligned(64)));
-    for (int l = 0; l < 8; ++l) {
-        density[l] = body->material->density;
-        speed[l] = 0.0;
-        unit[0][l] = unit[3][l] = unit[4][l] = 1.0;
-    }
-    int row = 0;
-    for (uint32_t s = 0; s < loaded->class_.nstate; ++s) {
-        const uint32_t shape = loaded->class_.state[s].shape;
-        const int components = shape == AB_VECTOR ? 2 : shape == AB_SYMMETRIC ? 4 : shape == AB_FULL ? 5 : 1;
-        for (int c = 0; c < components; ++c, ++row)
-            for (int l = 0; l < 8; ++l) state0[row][l] = state1[row][l] = loaded->class_.state[s].initial;
-    }
-    memset(stress1, 0, sizeof stress1);
-    uint8_t flag[8] = {0};
-    ab_batch batch = {.struct_size = sizeof batch, .dimension = 2, .components = 4, .count = 8, .ld = 8, .density = density, .strain_increment = zero[0],
-                      .deformation_gradient = unit[0], .velocity_gradient = zero[4], .stress0 = zero[0], .stress1 = stress1[0], .state0 = rows.states ? state0[0] : NULL,
-                      .state1 = rows.states ? state1[0] : NULL, .dissipation = (loaded->class_.gives & AB_GIVE_DISSIPATION) ? dissipation : NULL, .wave_speed = speed, .flag = flag};
-    int (*call)(void *, ab_batch *) = loaded->material.start ? loaded->material.start : loaded->material.update;
-    const int code = call(body->self, &batch);
-    if (code != 0 || !(speed[0] > 0.0) || !isfinite(speed[0]))
-        return ab_report_error(report, body->material->mark, "material '%s' (%s) could not start: %s", body->material->name, loaded->class_.name,
-                               body->service.message[0] ? body->service.message : "it gives no wave speed");
-    body->wave_speed = speed[0];
-    body->modulus = speed[0] * speed[0] * body->material->density;
-    for (size_t b = 0; b < body->block_count; ++b) {
-        double *block = mpm_block(body, b);
-        for (int c = 0; c < 4; ++c) memcpy(block + 8 * (ROW_STRESS + c), stress1[c], 8 * sizeof(double));
-        for (int s = 0; s < rows.states; ++s) memcpy(block + 8 * (rows.state + s), state1[s], 8 * sizeof(double));
-    }
-    return AB_OK;
-}
 
 /* Energy and motion before the first step. */
 static void measure(mpm_body *body)
@@ -388,7 +358,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
-    if (status == AB_OK) status = start_material(body, report);
+    if (status == AB_OK) status = mpm_material_start(body, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
     if (status == AB_OK && wants_birth(body)) {
         body->birth = malloc(2 * fill->count * sizeof *body->birth);

@@ -31,6 +31,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int inverse_half;     /* 2: their inverses */
     int gradient;         /* 4: deformation gradient xx, xy, yx, yy */
     int state, states;    /* the material's */
+    bool turns;           /* some state is a vector or a tensor */
 } mpm_rows;
 
 typedef struct mpm_sums { /* of one tile, one step */
@@ -142,6 +143,11 @@ void mpm_rows_plan(mpm_body *);                                   /* which rows 
 ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
 ab_status mpm_points_sort(mpm_body *, ab_report *);                /* after begin's bounds were broken, or the first time */
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
+
+/* material.c: the material's instance, its start, and how its states turn. */
+ab_status mpm_material_start(mpm_body *, ab_report *);
+int mpm_state_components(uint32_t shape);                          /* numbers that a state of this enum ab_shape keeps per point */
+void mpm_turn_state(const ab_class *, const double *state, v8 cosine, v8 sine, double *turned); /* rows of eight points; plane rotation */
 
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count, ab_report *); /* the tiles of `filled` (ascending) and their neighbours */

@@ -11,8 +11,6 @@ static const ab_field FIELDS[] = {
 };
 enum { FIXED_FIELDS = sizeof FIELDS / sizeof *FIELDS };
 
-static int state_components(uint32_t shape) { return shape == AB_VECTOR ? 2 : shape == AB_SYMMETRIC ? 4 : shape == AB_FULL ? 5 : 1; }
-
 /* The list is made once per body; the material's states stand behind the fixed ones. */
 ab_status mpm_fields_create(mpm_body *body, ab_report *report)
 {
@@ -25,7 +23,7 @@ ab_status mpm_fields_create(mpm_body *body, ab_report *report)
         body->fields[body->field_count++] = FIELDS[f];
     }
     for (uint32_t s = 0; s < class_->nstate; ++s)
-        body->fields[body->field_count++] = (ab_field){class_->state[s].name, class_->state[s].unit, state_components(class_->state[s].shape), ""};
+        body->fields[body->field_count++] = (ab_field){class_->state[s].name, class_->state[s].unit, mpm_state_components(class_->state[s].shape), ""};
     return AB_OK;
 }
 
@@ -50,7 +48,7 @@ static int row_of(const mpm_body *body, const char *field)
     int row = body->rows.state;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         if (!strcmp(field, class_->state[s].name)) return row;
-        row += state_components(class_->state[s].shape);
+        row += mpm_state_components(class_->state[s].shape);
     }
     return -1;
 }

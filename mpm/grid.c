@@ -4,21 +4,30 @@
 
 #include "mpm/body.h"
 
-/* Adds to sum[node*lanes + c] what the nine patches around hold of this tile's own nodes. A patch reaches one node before and three nodes behind its tile. */
+/* sum[node*lanes + c]: what the nine patches around hold of this tile's own nodes. A patch reaches one node before and three nodes behind its tile. The
+ * tile's own patch first, then its neighbours', always in one order. */
 static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum)
 {
+    if (tile->patch >= 0) {
+        const double *patch = body->patches + (size_t)tile->patch * PATCH_DOUBLES;
+        for (int j = 0; j < AB_TILE; ++j) memcpy(sum + lanes * j * AB_TILE, patch + lanes * ((j + 1) * PATCH + 1), sizeof(double) * (size_t)(lanes * AB_TILE));
+    } else
+        memset(sum, 0, sizeof(double) * (size_t)lanes * AB_TILE_NODES);
     for (int s = 0; s < 9; ++s) {
-        if (tile->around[s] < 0) continue;
+        if (s == 4 || tile->around[s] < 0) continue;
         const mpm_tile *from = body->tiles + tile->around[s];
         if (from->patch < 0) continue;
         const int dx = s % 3 - 1, dy = s / 3 - 1;
-        const int i0 = dx < 0 ? 0 : dx > 0 ? AB_TILE - 1 : 0, i1 = dx < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
-        const int j0 = dy < 0 ? 0 : dy > 0 ? AB_TILE - 1 : 0, j1 = dy < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const int i0 = dx > 0 ? AB_TILE - 1 : 0, i1 = dx < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const int j0 = dy > 0 ? AB_TILE - 1 : 0, j1 = dy < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
         const double *patch = body->patches + (size_t)from->patch * PATCH_DOUBLES;
         for (int j = j0; j < j1; ++j) {
             const double *row = patch + lanes * ((j - dy * AB_TILE + 1) * PATCH + i0 - dx * AB_TILE + 1);
             double *own = sum + lanes * (j * AB_TILE + i0);
-            for (int k = 0; k < lanes * (i1 - i0); ++k) own[k] += row[k];
+            if (lanes == 8)
+                for (int i = 0; i < i1 - i0; ++i) v8_store(own + 8 * i, v8_load(own + 8 * i) + v8_load(row + 8 * i));
+            else
+                for (int i = 0; i < i1 - i0; ++i) v2_store(own + 2 * i, v2_load(own + 2 * i) + v2_load(row + 2 * i));
         }
     }
 }
@@ -45,7 +54,6 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
         double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
-        memset(sum, 0, sizeof sum);
         add_patches(body, tile, 8, sum);
         double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
         for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
@@ -76,7 +84,6 @@ void mpm_grid_assemble_remap(mpm_body *body)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
         double sum[2 * AB_TILE_NODES] __attribute__((aligned(64)));
-        memset(sum, 0, sizeof sum);
         add_patches(body, tile, 2, sum);
         double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
         for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {

@@ -6,8 +6,6 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-static int shape_components(uint32_t shape) { return shape == AB_VECTOR ? 2 : shape == AB_SYMMETRIC ? 4 : shape == AB_FULL ? 5 : 1; }
-
 void mpm_rows_plan(mpm_body *body)
 {
     const ab_class *class_ = &body->material->loaded->class_;
@@ -22,7 +20,7 @@ void mpm_rows_plan(mpm_body *body)
     if (gap || (gimp && body->contiguous)) rows.extent = rows.count, rows.count += 3;
     if (gimp) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
-    for (uint32_t s = 0; s < class_->nstate; ++s) rows.states += shape_components(class_->state[s].shape);
+    for (uint32_t s = 0; s < class_->nstate; ++s) rows.states += mpm_state_components(class_->state[s].shape), rows.turns = rows.turns || class_->state[s].shape != AB_SCALAR;
     if (rows.states) rows.state = rows.count, rows.count += rows.states;
     body->rows = rows;
 }
