@@ -43,7 +43,8 @@ static void take_plugins(ab_scene_reader *r, const ab_node *node, const ab_node 
     const char *names[MOST_NAMES];
     size_t count = ab_settings_names(&contact->finder->class_, names, 0, MOST_NAMES);
     if (contact->responder != contact->finder) count = ab_settings_names(&contact->responder->class_, names, count, MOST_NAMES);
-    ab_section_unknown(&r->base, &ab_section_contact, names, count, node, where);
+    const bool swapped = (v[CONTACT_ALGORITHM] && v[CONTACT_ALGORITHM]->override_) || (v[CONTACT_RESPONSE] && v[CONTACT_RESPONSE]->override_);
+    ab_section_unknown(&r->base, &ab_section_contact, names, count, swapped, node, where);
     contact->finder_settings = ab_settings_read(&r->base, &contact->finder->class_, node, where);
     contact->responder_settings =
         contact->responder == contact->finder ? contact->finder_settings : ab_settings_read(&r->base, &contact->responder->class_, node, where);

@@ -24,7 +24,7 @@ static void take_material(ab_scene_reader *r, const ab_entry *entry, ab_material
     if (!(class_->spaces & AB_PLANE_STRAIN)) ab_report_error(r->base.report, v[MATERIAL_MODEL]->mark, "%s: model '%s' does not work in plane strain", path, model);
     const char *names[MOST];
     const size_t count = ab_settings_names(class_, names, 0, MOST);
-    ab_section_unknown(&r->base, &ab_section_material, names, count, entry->value, where);
+    ab_section_unknown(&r->base, &ab_section_material, names, count, v[MATERIAL_MODEL]->override_, entry->value, where);
     material->settings = ab_settings_read(&r->base, class_, entry->value, where);
 }
 

@@ -32,7 +32,7 @@ static const ab_key *key_named(const ab_section *section, const char *name) {
     return NULL;
 }
 
-void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, const ab_node *node, const char *where) {
+void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped, const ab_node *node, const char *where) {
     enum { MOST = 200 };
     const char *names[MOST];
     size_t count = 0;
@@ -44,6 +44,10 @@ void ab_section_unknown(ab_reader *reader, const ab_section *section, const char
         bool known = key_named(section, entry->key) != NULL;
         for (size_t m = 0; m < more_count && !known; m++) known = strcmp(more[m], entry->key) == 0;
         if (known) continue;
+        if (swapped && !entry->value->override_) { /* the file speaks to the plugin that --set has put another in place of */
+            ab_report_warning(reader->report, entry->mark, "%s: '%.64s' is no setting of the plugins chosen by --set; it is left out", where, entry->key);
+            continue;
+        }
         char tail[AB_TAIL];
         ab_report_error(reader->report, entry->mark, "unknown key '%.64s' in %s%s", entry->key, where[0] == '\0' ? "the scene" : where,
                         ab_suggest_tail(entry->key, names, count, tail, sizeof tail));
@@ -57,7 +61,7 @@ bool ab_section_open(ab_reader *reader, const ab_section *section, const ab_node
         ab_report_error(reader->report, node->mark, "%s must be a mapping {key: value, ...}, not %s", shown, ab_node_kind_name(node));
         return false;
     }
-    if (section->more == NULL) ab_section_unknown(reader, section, NULL, 0, node, where);
+    if (section->more == NULL) ab_section_unknown(reader, section, NULL, 0, false, node, where);
     for (size_t k = 0; k < section->count; k++) {
         const ab_key *key = &section->keys[k];
         const ab_node *value = ab_node_find(node, key->name);

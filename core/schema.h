@@ -54,8 +54,9 @@ enum { AB_WHERE = 200, AB_TAIL = 1024 }; /* "contact[0].friction"; "; did you me
 /* Sorts the values of a mapping by the section's keys: values[k] is what was written for keys[k], or NULL. Says every unknown, later,
  * empty and missing key. `where` is the section's place for messages ("contact[0]"; "" for the top). False when node is not a mapping. */
 bool ab_section_open(ab_reader *reader, const ab_section *section, const ab_node *node, const char *where, const ab_node **values);
-/* The check of unknown keys alone, with further names that are known: for sections with settings of plugins. */
-void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, const ab_node *node, const char *where);
+/* The check of unknown keys alone, with further names that are known: for sections with settings of plugins. `swapped`: --set has named the plugin, so keys
+ * of the file that only the plugin named there would know are warned of and left out. */
+void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped, const ab_node *node, const char *where);
 
 /* One value each. node NULL: the key's default, where it has one. False when nothing was read, or a mistake was reported; *value is then unchanged.
  * `where` is the section's place. */
