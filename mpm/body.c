@@ -363,7 +363,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     if (status == AB_OK && wants_birth(body)) {
         body->birth = malloc(2 * fill->count * sizeof *body->birth);
         if (!body->birth) status = ab_report_failure(report, "no memory for the initial places of body '%s'", spec->name);
-        for (size_t p = 0; body->birth && p < fill->count; ++p) body->birth[2 * p] = fill->x[p], body->birth[2 * p + 1] = fill->y[p];
+        for (size_t p = 0; body->birth && p < fill->count; ++p) body->birth[2 * p] = fill->x[p] - body->origin[0], body->birth[2 * p + 1] = fill->y[p] - body->origin[1];
     }
     if (status == AB_OK) status = mpm_fields_create(body, report);
     ab_fill_destroy(fill);

@@ -94,7 +94,7 @@ struct mpm_body {
     size_t spare_capacity;
     size_t points;              /* alive */
     size_t born;                /* ids given out: 0 .. born-1 */
-    double *birth;              /* (x, y) by id at the start, only when displacements or `at` are asked for */
+    double *birth;              /* (x, y) by id at the start, from the grid's corner; only when displacements are asked for */
 
     mpm_tile *tiles;
     uint64_t *keys;             /* of the tiles, ascending */
