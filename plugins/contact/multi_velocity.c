@@ -123,8 +123,9 @@ static int is_corner(const ab_trace *t, size_t i, const double n[3], double area
 }
 
 /* The average of both normals. Where they disagree and only one body has a face there, that body's: the face's normal, not the edge's. Where both have an
- * edge (bars end to end, blocks corner to corner), the gradient of the share of mass: m_b grad m_a - m_a grad m_b. What both bodies' edges have in
- * common, as the sides of two flush bars or a wall beside them, cancels in it exactly however far each body reaches. */
+ * edge (bars end to end, blocks corner to corner), or where the surface nearest to the node is one that looks away from the other body (a body one cell thin), the gradient of the share of
+ * mass: m_b grad m_a - m_a grad m_b. What both have in common, as the sides of two flush bars, a wall beside them or the far surface, cancels in it
+ * exactly however far each body reaches. */
 static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double la, double lb, double n[3])
 {
     const uint32_t d = a->dimension;
@@ -136,8 +137,8 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     if (cosine >= mv->corner_cosine) return;
     const int corner_a = is_corner(a, i, na, la), corner_b = is_corner(b, i, nb, lb);
     for (uint32_t c = 0; c < d; ++c)
-        if (corner_a && corner_b) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
-        else if (corner_a || corner_b) n[c] = corner_a ? -nb[c] : na[c];
+        if (corner_a == corner_b && (corner_a || cosine <= 0.0)) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
+        else if (corner_a != corner_b) n[c] = corner_a ? -nb[c] : na[c];
 }
 
 static const double LEAST_AREA = 1e-3; /* of a cell's face */
