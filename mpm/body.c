@@ -70,6 +70,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
 static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report)
 {
+    mpm_loads_follow(body, step);
     body->culprit = -1;
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) && (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) &&
                            step->number % WAVE_SPEED_EVERY == 0;
@@ -183,8 +184,8 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
 {
     mpm_body *body = (mpm_body *)domain;
     if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
-    mpm_loads_work(body, step);
     const bool remap = body->update == MPM_MUSL;
+    if (!remap) mpm_loads_work(body, step);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
         if (body->tiles[k].patch >= 0) body->kernel->finish(body, k, step, remap, body->sums + k);
@@ -195,8 +196,10 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
 
 static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report)
 {
-    (void)step, (void)report;
-    mpm_grid_assemble_remap((mpm_body *)domain);
+    (void)report;
+    mpm_body *body = (mpm_body *)domain;
+    mpm_grid_assemble_remap(body);
+    mpm_loads_work(body, step); /* what points gain from a nodal force is force x (mapped velocity before + after)/2, exactly */
     return AB_OK;
 }
 

@@ -54,6 +54,8 @@ typedef struct mpm_load { /* a piece of outline with a traction */
     uint32_t id;          /* of the point under it */
     uint32_t spec;        /* which load of the scene */
     double length;        /* m, at the start */
+    double arm[2];        /* m, from the point to the middle of the piece; follows the material */
+    double half[2];       /* m, from there to its end */
 } mpm_load;
 
 typedef struct mpm_weights { /* of a block: values and gradients (1/m) of the 2 or 3 nodes per direction, and the first of them in the patch */
@@ -164,6 +166,7 @@ void mpm_grid_limit_light(mpm_body *);                             /* USL: light
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);
 void mpm_loads_scatter(mpm_body *, const ab_step *);
 void mpm_loads_work(mpm_body *, const ab_step *);
+void mpm_loads_follow(mpm_body *, const ab_step *);                 /* with the velocities that strain the points, before they are strained */
 
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
