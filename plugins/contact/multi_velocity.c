@@ -20,7 +20,7 @@ static const ab_param PARAMS[] = {
      "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
     {"gap", "1", "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical form: early and lossy)", "distance|none",
      AB_CHOICE, 0, 0, 0, 0},
-    {"corner_angle", "rad", "corner rule of `average`: where the normals disagree by more than this and only one body has a face at the node (the other an edge), the face's normal is taken", NULL,
+    {"corner_angle", "rad", "corner rule of `average`: where the two bodies' normals disagree by more than this, the direction of closest approach of their material is taken", NULL,
      AB_REAL, 0, 0.02, 0.0, 3.2},
 };
 
@@ -89,44 +89,55 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
 /* Distance of the two bodies' material along n at shared node i, m; negative: they overlap. */
 static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) { return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0); }
 
-/* True where a body's outline is no face across n at node i, so that its gradient is no normal: the node lies deep inside (the gradient is noise), the
- * outline ends within a cell to one side, or it falls away by more than a quarter of a cell on the average of both sides (an edge). */
-static int is_corner(const ab_trace *t, size_t i, const double n[3], double area)
+/* Distance along direction `angle` between the material of both bodies near node i, m; negative: overlap. All points near the node count, so over all
+ * directions the largest distance belongs to the direction of closest approach of the two (the direction of least penetration). Two dimensions. */
+static double clearance(const ab_trace *a, const ab_trace *b, size_t i, double angle)
 {
-    static const double DEEP = 0.1, FALL = 0.25, ENDS = 0.95;
-    const uint32_t d = t->dimension;
-    const size_t ld = t->near_ld;
-    const double h = t->cell;
-    double volume = 0.0;
-    for (uint32_t c = 0; c < d; ++c) volume = fmax(volume, fabs(t->mass_gradient[c * t->ld + i]));
-    volume = volume > 0.0 ? t->mass[i] * area / volume : INFINITY; /* mass over density, density = mass gradient over area, up to its direction */
-    double cell_area = h;
-    for (uint32_t c = 2; c < d; ++c) cell_area *= h;
-    if (area * h < DEEP * fmin(volume, cell_area * h)) return 1;
-    double middle = -INFINITY, side[2] = {-INFINITY, -INFINITY};
-    const double across[3] = {-n[1], n[0], 0.0};
-    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
-        double along = 0.0, beside = 0.0;
-        for (uint32_t c = 0; c < d; ++c) {
-            const double r = t->near_position[c * ld + k] - t->position[c * t->ld + i];
-            along += r * n[c];
-            beside += r * across[c];
-        }
-        const double half = half_size(t, k, n), reach_ = along + half;
-        const double width = half_size(t, k, across);
-        if (fabs(beside) <= 0.5 * h && reach_ > middle) middle = reach_;
-        if (beside + width >= ENDS * h && reach_ > side[1]) side[1] = reach_;
-        if (beside - width <= -ENDS * h && reach_ > side[0]) side[0] = reach_;
+    const double n[3] = {cos(angle), sin(angle), 0.0};
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        const ab_trace *t = side ? b : a;
+        const double sign = side ? -1.0 : 1.0;
+        double far = -INFINITY;
+        for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k)
+            far = fmax(far, sign * (t->near_position[k] * n[0] + t->near_position[t->near_ld + k] * n[1]) + half_size(t, k, n));
+        sum -= far;
     }
-    if (side[0] == -INFINITY || side[1] == -INFINITY) return 1;
-    return middle - 0.5 * (side[0] + side[1]) > FALL * h;
+    return sum;
 }
 
-/* The average of both normals. Where they disagree and only one body has a face there, that body's: the face's normal, not the edge's. Where both have an
- * edge (bars end to end, blocks corner to corner), or where the surface nearest to the node is one that looks away from the other body (a body one cell thin), the gradient of the share of
- * mass: m_b grad m_a - m_a grad m_b. What both have in common, as the sides of two flush bars, a wall beside them or the far surface, cancels in it
- * exactly however far each body reaches. */
-static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double la, double lb, double n[3])
+/* Turns n to the direction of closest approach: uphill in steps, then by the golden section. On a face it is the face's normal to rounding, also where the
+ * other body shows only an edge or a single point. */
+static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, double n[3])
+{
+    static const double STEP = 0.15, FINE = 1e-7, GOLDEN = 0.6180339887498949, PI = 3.141592653589793;
+    double middle = atan2(n[1], n[0]), best = clearance(a, b, i, middle);
+    const double up = clearance(a, b, i, middle + STEP), down = clearance(a, b, i, middle - STEP);
+    double step = up >= down ? STEP : -STEP, next = fmax(up, down);
+    for (double turned = 0.0; next > best && turned < PI; turned += STEP) {
+        middle += step;
+        best = next;
+        next = clearance(a, b, i, middle + step);
+    }
+    double low = middle - STEP, high = middle + STEP;
+    double x = high - GOLDEN * (high - low), y = low + GOLDEN * (high - low), at_x = clearance(a, b, i, x), at_y = clearance(a, b, i, y);
+    while (high - low > FINE) {
+        if (at_x >= at_y) {
+            high = y, y = x, at_y = at_x;
+            at_x = clearance(a, b, i, x = high - GOLDEN * (high - low));
+        } else {
+            low = x, x = y, at_x = at_y;
+            at_y = clearance(a, b, i, y = low + GOLDEN * (high - low));
+        }
+    }
+    n[0] = cos(0.5 * (low + high));
+    n[1] = sin(0.5 * (low + high));
+}
+
+/* The average of both normals. Where they disagree one of them is no normal: an edge, a body that only just reaches the node, the far surface of a body
+ * one cell thin. There the gradient of the share of mass, m_b grad m_a - m_a grad m_b, begins (what both have in common, as the sides of two flush
+ * bars or a wall beside them, cancels in it), and in two dimensions the direction of closest approach ends. */
+static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double n[3])
 {
     const uint32_t d = a->dimension;
     double cosine = 0.0;
@@ -135,10 +146,8 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
         n[c] = na[c] - nb[c];
     }
     if (cosine >= mv->corner_cosine) return;
-    const int corner_a = is_corner(a, i, na, la), corner_b = is_corner(b, i, nb, lb);
-    for (uint32_t c = 0; c < d; ++c)
-        if (corner_a == corner_b && (corner_a || cosine <= 0.0)) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
-        else if (corner_a != corner_b) n[c] = corner_a ? -nb[c] : na[c];
+    for (uint32_t c = 0; c < d; ++c) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
+    if (d == 2) closest_approach(a, b, i, n);
 }
 
 static const double LEAST_AREA = 1e-3; /* of a cell's face */
@@ -152,10 +161,11 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         va[c] = na[c] = a->area_vector[c * a->ld + i];
         vb[c] = nb[c] = b->area_vector[c * b->ld + i];
     }
-    const double la = unit(na, d), lb = unit(nb, d);
+    unit(na, d);
+    unit(nb, d);
     n[0] = n[1] = n[2] = 0.0;
     if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
-    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, la, lb, n);
+    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, n);
     else
         for (uint32_t c = 0; c < d; ++c)
             n[c] = mv->normal == NORMAL_MASS_GRADIENT ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
