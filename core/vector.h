@@ -16,7 +16,14 @@ typedef double v2_loose __attribute__((vector_size(16), aligned(8)));
 typedef int32_t v8_int __attribute__((vector_size(32)));
 typedef int64_t v8_mask __attribute__((vector_size(64)));
 
-static inline v8 v8_set(double a) { return (v8){a, a, a, a, a, a, a, a}; }
+static inline v8 v8_set(double a)
+{
+#if defined(__AVX512F__)
+    return (v8){a, a, a, a, a, a, a, a};
+#else
+    return a - (v8){0}; /* a broadcast; gcc would fill an initialiser lane by lane through memory */
+#endif
+}
 static inline v4 v4_set(double a) { return (v4){a, a, a, a}; }
 static inline v8 v8_load(const double *p) { return *(const v8_loose *)p; }
 static inline v4 v4_load(const double *p) { return *(const v4_loose *)p; }
@@ -52,10 +59,11 @@ static inline v8 v8_less(v8 a, v8 b, v8 x, v8 y)
 #if defined(__AVX512F__)
 #define v8_two(a, b, bits) ((v8)_mm512_mask_broadcastsd_pd(_mm512_set1_pd(*(a)), (bits), _mm_load_sd(b)))
 #else
-#define V8_LANE(bits, l) ((bits) >> (l) & 1 ? 8 + (l) : (l))
-#define v8_two(a, b, bits)                                                                                                                             \
-    __builtin_shufflevector(v8_set(*(a)), v8_set(*(b)), V8_LANE(bits, 0), V8_LANE(bits, 1), V8_LANE(bits, 2), V8_LANE(bits, 3), V8_LANE(bits, 4), \
-                            V8_LANE(bits, 5), V8_LANE(bits, 6), V8_LANE(bits, 7))
+#define V8_BIT(bits, l) (-(int64_t)((bits) >> (l) & 1))
+#define v8_two(a, b, bits)                                                                                                                              \
+    v8_select((v8_mask){V8_BIT(bits, 0), V8_BIT(bits, 1), V8_BIT(bits, 2), V8_BIT(bits, 3), V8_BIT(bits, 4), V8_BIT(bits, 5), V8_BIT(bits, 6), \
+                        V8_BIT(bits, 7)},                                                                                                               \
+              v8_set(*(b)), v8_set(*(a)))
 #endif
 static inline v8 v8_floor(v8 a) /* |a| < 2^51 */
 {
@@ -84,9 +92,23 @@ static inline double v8_highest(v8 a)
 }
 static inline v2 v2_load(const double *p) { return *(const v2_loose *)p; }
 static inline void v2_store(double *p, v2 a) { *(v2_loose *)p = a; }
-static inline v8 v8_join(v4 low, v4 high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
-static inline v4 v8_low(v8 a) { return __builtin_shufflevector(a, a, 0, 1, 2, 3); }
-static inline v4 v8_high(v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7); }
+static inline v8 v8_join(v4 low, v4 high)
+{
+#if defined(__AVX512F__)
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+    v8 both;
+    __builtin_memcpy(&both, &low, sizeof low);
+    __builtin_memcpy((char *)&both + sizeof low, &high, sizeof high);
+    return both;
+#endif
+}
+static inline v4 v8_low(v8 a)
+{
+    v4 low;
+    __builtin_memcpy(&low, &a, sizeof low);
+    return low;
+}
 
 /* Makes the compiler take an array it has just stored from memory again: a broadcast from memory is free, one from a register's lane costs two shuffles. */
 #define V8_IN_MEMORY(array) __asm__("" : "+m"(array))
@@ -94,6 +116,7 @@ static inline v4 v8_high(v8 a) { return __builtin_shufflevector(a, a, 4, 5, 6, 7
 /* Rows become columns: between eight points' component c and one point's eight components. */
 static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])
 {
+#if defined(__AVX512F__)
 #define AB_LO(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
 #define AB_HI(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
 #define AB_EVEN(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
@@ -114,6 +137,34 @@ static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])
 #undef AB_HI
 #undef AB_EVEN
 #undef AB_ODD
+#else /* shuffles across 64 bytes are slow where registers are shorter: go through memory */
+    double from[8][8] __attribute__((aligned(64))), to[8][8] __attribute__((aligned(64)));
+    for (int i = 0; i < 8; ++i) *(v8 *)from[i] = r[i];
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 8; ++j) to[j][i] = from[i][j];
+    for (int i = 0; i < 8; ++i) r[i] = *(v8 *)to[i];
+#endif
+}
+
+/* The same for eight points of four components: four vectors over the points. */
+static inline __attribute__((always_inline)) void v8_transpose_half(const v4 r[8], v8 out[4])
+{
+#if defined(__AVX512F__)
+    const v8 p0 = v8_join(r[0], r[4]), p1 = v8_join(r[1], r[5]), p2 = v8_join(r[2], r[6]), p3 = v8_join(r[3], r[7]);
+    /* p0: 0a 0b 0c 0d 4a 4b 4c 4d, ... */
+    const v8 ac0 = __builtin_shufflevector(p0, p1, 0, 8, 2, 10, 4, 12, 6, 14), bd0 = __builtin_shufflevector(p0, p1, 1, 9, 3, 11, 5, 13, 7, 15);
+    const v8 ac1 = __builtin_shufflevector(p2, p3, 0, 8, 2, 10, 4, 12, 6, 14), bd1 = __builtin_shufflevector(p2, p3, 1, 9, 3, 11, 5, 13, 7, 15);
+    out[0] = __builtin_shufflevector(ac0, ac1, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[1] = __builtin_shufflevector(bd0, bd1, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[2] = __builtin_shufflevector(ac0, ac1, 2, 3, 10, 11, 6, 7, 14, 15);
+    out[3] = __builtin_shufflevector(bd0, bd1, 2, 3, 10, 11, 6, 7, 14, 15);
+#else
+    double from[8][4] __attribute__((aligned(64))), to[4][8] __attribute__((aligned(64)));
+    for (int i = 0; i < 8; ++i) *(v4 *)from[i] = r[i];
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j < 4; ++j) to[j][i] = from[i][j];
+    for (int j = 0; j < 4; ++j) out[j] = *(v8 *)to[j];
+#endif
 }
 
 #endif

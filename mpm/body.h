@@ -158,7 +158,8 @@ long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);           
 /* grid.c */
 void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);  /* old velocity, trial velocity */
 void mpm_grid_assemble_remap(mpm_body *);                          /* velocity of the points mapped back */
-void mpm_grid_fetch(const mpm_body *, size_t tile, double *velocity, double *change); /* patches of pairs; change may be NULL */
+void mpm_grid_fetch_velocity(const mpm_body *, size_t tile, double *pairs);    /* a patch of velocities */
+void mpm_grid_fetch_motion(const mpm_body *, size_t tile, double *quadruples); /* a patch of velocities and their changes in this step */
 double mpm_grid_damp(mpm_body *, double factor);                    /* after contact; energy taken, J */
 void mpm_grid_limit_light(mpm_body *);                             /* USL: light nodes take their old velocity for the strain */
 

@@ -93,7 +93,8 @@ void mpm_grid_assemble_remap(mpm_body *body)
     }
 }
 
-void mpm_grid_fetch(const mpm_body *body, size_t number, double *velocity, double *change)
+/* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. */
+static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, int lanes, double *patch)
 {
     const mpm_tile *tile = body->tiles + number;
     for (int s = 0; s < 9; ++s) {
@@ -101,28 +102,24 @@ void mpm_grid_fetch(const mpm_body *body, size_t number, double *velocity, doubl
         const int i0 = dx < 0 ? AB_TILE - 1 : 0, i1 = dx > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
         const int j0 = dy < 0 ? AB_TILE - 1 : 0, j1 = dy > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
         for (int j = j0; j < j1; ++j) {
-            const int at = 2 * ((j + dy * AB_TILE + 1) * PATCH + i0 + dx * AB_TILE + 1);
+            double *to = patch + lanes * ((j + dy * AB_TILE + 1) * PATCH + i0 + dx * AB_TILE + 1);
             if (tile->around[s] < 0) {
-                memset(velocity + at, 0, sizeof(double) * 2 * (size_t)(i1 - i0));
-                if (change) memset(change + at, 0, sizeof(double) * 2 * (size_t)(i1 - i0));
+                memset(to, 0, sizeof(double) * (size_t)(lanes * (i1 - i0)));
                 continue;
             }
             const double *own = body->own + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * OWN_RECORD;
-            if (change)
-                for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
-                    const v2 now = v2_load(own + OWN_VELOCITY);
-                    v2_store(velocity + at + 2 * i, now);
-                    v2_store(change + at + 2 * i, now - v2_load(own + OWN_OLD));
-                }
-            else
-                for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) v2_store(velocity + at + 2 * i, v2_load(own + OWN_VELOCITY));
+            for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
+                const v2 now = v2_load(own + OWN_VELOCITY);
+                v2_store(to + lanes * i, now);
+                if (lanes == 4) v2_store(to + lanes * i + 2, now - v2_load(own + OWN_OLD));
+            }
         }
     }
-    for (int k = 0; k < 8; ++k) {
-        velocity[2 * PATCH_NODES + k] = 0.0;
-        if (change) change[2 * PATCH_NODES + k] = 0.0;
-    }
+    memset(patch + lanes * PATCH_NODES, 0, 8 * sizeof(double)); /* a row of four nodes may look past the last three */
 }
+
+void mpm_grid_fetch_velocity(const mpm_body *body, size_t number, double *pairs) { fetch(body, number, 2, pairs); }
+void mpm_grid_fetch_motion(const mpm_body *body, size_t number, double *quadruples) { fetch(body, number, 4, quadruples); }
 
 /* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance, here all that changed the node's velocity
  * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Returns the energy taken, J. */

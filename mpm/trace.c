@@ -120,8 +120,27 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
             for (int jj = 0; jj < nodes; ++jj)
                 for (int ii = 0; ii < nodes; ++ii)
                     if (wanted[(j + jj) * PATCH + i + ii]) reached[j * PATCH + i] = true;
+    double low[2] = {PATCH, PATCH}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
+    for (int n = 0; n < PATCH_NODES; ++n) {
+        if (!wanted[n]) continue;
+        const double at[2] = {n % PATCH - 1, n / PATCH - 1};
+        for (int c = 0; c < 2; ++c) {
+            if (at[c] < low[c]) low[c] = at[c];
+            if (at[c] > high[c]) high[c] = at[c];
+        }
+    }
+    for (int c = 0; c < 2; ++c) {
+        const double corner = (c ? tile->ty : tile->tx) * AB_TILE, farthest = 0.5 * nodes;
+        low[c] = (corner + low[c] - farthest) * body->h;
+        high[c] = (corner + high[c] + farthest) * body->h;
+    }
     for (uint32_t b = 0; b < tile->blocks; ++b) {
         const double *block = mpm_block(body, tile->first + b);
+        const v8 x = v8_load(block + 8 * ROW_X), y = v8_load(block + 8 * (ROW_X + 1));
+        const v8_mask inside = (x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1]);
+        int64_t any = 0;
+        for (int l = 0; l < 8; ++l) any |= inside[l];
+        if (!any) continue;
         mpm_weights w;
         body->kernel->weights(body, tile, block, &w);
         for (int l = 0; l < 8; ++l) {

@@ -1,0 +1,138 @@
+/* batch.h: strain of plane strain and the material's batch, the same for every basis: what stands between the gradients of eight blocks of points and
+ * their new stress. Included by the kernels, so that it is compiled into their loops. */
+#ifndef AB_MPM_BATCH_H
+#define AB_MPM_BATCH_H
+
+#include "mpm/body.h"
+
+enum { LONG = 64 }; /* points in a batch: rows of a batch have this length */
+
+typedef struct mpm_long_batch {
+    ab_batch view;
+    bool turns;
+    const ab_class *class_;
+    double strain[4][LONG] __attribute__((aligned(64)));
+    double turned[4][LONG] __attribute__((aligned(64)));  /* old stress, turned with the material */
+    double stress[4][LONG] __attribute__((aligned(64)));
+    double jacobian[LONG] __attribute__((aligned(64)));
+    double gradient[5][LONG] __attribute__((aligned(64)));
+    double spatial[4][LONG] __attribute__((aligned(64)));
+    double density[LONG] __attribute__((aligned(64)));
+    double dissipation[LONG] __attribute__((aligned(64)));
+    double wave_speed[LONG] __attribute__((aligned(64)));
+    double state0[MAX_STATE][LONG] __attribute__((aligned(64)));
+    double state1[MAX_STATE][LONG] __attribute__((aligned(64)));
+    uint8_t flag[LONG];
+} mpm_long_batch;
+
+static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, const ab_step *step)
+{
+    const ab_class *class_ = &body->material->loaded->class_;
+    batch->class_ = class_;
+    batch->turns = body->rows.turns;
+    batch->view = (ab_batch){.struct_size = sizeof(ab_batch), .dimension = 2, .components = 4, .ld = LONG, .time = step->time, .dt = step->dt};
+    ab_batch *v = &batch->view;
+    v->strain_increment = batch->strain[0];
+    v->stress0 = batch->turned[0];
+    v->stress1 = batch->stress[0];
+    v->flag = batch->flag;
+    if ((class_->needs & AB_NEED_DENSITY) || body->ask_wave_speed) v->density = batch->density;
+    if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) v->deformation_gradient = batch->gradient[0];
+    if (class_->needs & AB_NEED_VELOCITY_GRADIENT) v->velocity_gradient = batch->spatial[0];
+    if (class_->gives & AB_GIVE_DISSIPATION) v->dissipation = batch->dissipation;
+    if (body->ask_wave_speed) v->wave_speed = batch->wave_speed;
+    if (body->rows.states) v->state0 = batch->state0[0], v->state1 = batch->state1[0];
+    for (int l = 0; l < LONG; l += 8) v8_store(batch->strain[2] + l, v8_set(0.0)); /* plane strain */
+    for (int l = 0; l < LONG; ++l) batch->flag[l] = 0;
+}
+
+/* Block b of the batch: strain increment and turned stress. The increment is that of Hughes and Winget (1980): G = H (I + H/2)^-1, so that a finite rotation
+ * gives no strain; in two dimensions the rotation is one angle. Deformation gradients of the points move on to the end of the step. */
+static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batch *batch, mpm_rows rows, double *block, const double h[4][LONG], uint32_t b)
+{
+    const size_t at = 8 * (size_t)b;
+    const v8 one = v8_set(1.0), half = v8_set(0.5);
+    const v8 hxx = v8_load(h[0] + at), hxy = v8_load(h[1] + at), hyx = v8_load(h[2] + at), hyy = v8_load(h[3] + at);
+    const v8 cross = hxx * hyy - hxy * hyx, trace = hxx + hyy;
+    const v8 middle = one + half * trace + v8_set(0.25) * cross; /* det(I + H/2) */
+    const v8 twist = half * (hyx - hxy), quarter = v8_set(0.25) * twist * twist, square = middle * middle;
+    const v8 both = one / (middle * (square + quarter)); /* one division for 1/middle and 1/(middle^2 + twist^2/4) */
+    const v8 inverse = both * (square + quarter), scale = both * middle;
+    const v8 cosine = (square - quarter) * scale, sine = twist * middle * scale; /* of the angle whose half has the tangent twist/(2 middle) */
+    v8_store(batch->strain[0] + at, (hxx + half * cross) * inverse);
+    v8_store(batch->strain[1] + at, (hyy + half * cross) * inverse);
+    v8_store(batch->strain[3] + at, (hxy + hyx) * inverse);
+    v8_store(batch->jacobian + at, one + trace + cross); /* det(I + H) */
+    const v8 cc = cosine * cosine, ss = sine * sine, cs = cosine * sine;
+    const v8 sxx = v8_load(block + 8 * ROW_STRESS), syy = v8_load(block + 8 * (ROW_STRESS + 1)), sxy = v8_load(block + 8 * (ROW_STRESS + 3));
+    v8_store(batch->turned[0] + at, cc * sxx + ss * syy - (cs + cs) * sxy);
+    v8_store(batch->turned[1] + at, ss * sxx + cc * syy + (cs + cs) * sxy);
+    v8_store(batch->turned[2] + at, v8_load(block + 8 * (ROW_STRESS + 2)));
+    v8_store(batch->turned[3] + at, cs * (sxx - syy) + (cc - ss) * sxy);
+    if (batch->view.density) {
+        const v8 volume = v8_load(block + 8 * ROW_VOLUME) * (one + trace + cross);
+        v8_store(batch->density + at, v8_load(block + 8 * ROW_MASS) / v8_less(v8_set(0.0), volume, volume, one));
+    }
+    if (rows.gradient >= 0) {
+        double *f = block + 8 * rows.gradient;
+        const v8 fxx = v8_load(f), fxy = v8_load(f + 8), fyx = v8_load(f + 16), fyy = v8_load(f + 24);
+        const v8 new_f[4] = {fxx + hxx * fxx + hxy * fyx, fxy + hxx * fxy + hxy * fyy, fyx + hyx * fxx + hyy * fyx, fyy + hyx * fxy + hyy * fyy};
+        for (int c = 0; c < 4; ++c) {
+            v8_store(f + 8 * c, new_f[c]);
+            v8_store(batch->gradient[c] + at, new_f[c]);
+        }
+        v8_store(batch->gradient[4] + at, one);
+    }
+    if (batch->view.velocity_gradient) {
+        const v8 rate = v8_set(1.0 / batch->view.dt);
+        for (int c = 0; c < 4; ++c) v8_store(batch->spatial[c] + at, v8_load(h[c] + at) * rate);
+    }
+    if (rows.states) {
+        double turned[MAX_STATE][8] __attribute__((aligned(64)));
+        const double *state = block + 8 * rows.state;
+        if (batch->turns) { /* vectors and tensors turn with the material before it sees them */
+            mpm_turn_state(batch->class_, state, cosine, sine, turned[0]);
+            state = turned[0];
+        }
+        for (int s = 0; s < rows.states; ++s) v8_store(batch->state0[s] + at, v8_load(state + 8 * s));
+    }
+}
+
+/* The material's answer for `count` points; not 0: it gave up. */
+static inline int mpm_batch_call(mpm_long_batch *batch, const mpm_body *body, size_t count)
+{
+    batch->view.count = count;
+    return body->material->loaded->material.update(body->self, &batch->view);
+}
+
+/* Block b: new stress, states and volume; work of the step. */
+static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_long_batch *batch, mpm_rows rows, double *block, uint32_t b, v8 *strain_work, v8 *plastic_work, v8 *fastest)
+{
+    const size_t at = 8 * (size_t)b;
+    const v8 volume0 = v8_load(block + 8 * ROW_VOLUME), volume = volume0 * v8_load(batch->jacobian + at);
+    v8 work = v8_set(0.0);
+    for (int c = 0; c < 4; ++c) {
+        const v8 stress = v8_load(batch->stress[c] + at);
+        if (c != 2) work += (v8_load(batch->turned[c] + at) + stress) * v8_load(batch->strain[c] + at);
+        v8_store(block + 8 * (ROW_STRESS + c), stress);
+    }
+    *strain_work += v8_set(0.25) * (volume0 + volume) * work;
+    v8_store(block + 8 * ROW_VOLUME, volume);
+    if (batch->view.dissipation) *plastic_work += volume * v8_load(batch->dissipation + at);
+    if (batch->view.wave_speed) *fastest = v8_max(*fastest, v8_less(v8_set(0.0), volume, v8_load(batch->wave_speed + at), v8_set(0.0)));
+    for (int s = 0; s < rows.states; ++s) v8_store(block + 8 * (rows.state + s), v8_load(batch->state1[s] + at));
+}
+
+/* A' = (I + H) A (I + H)^T for the domain tensor (xx, yy, xy) of block b. */
+static inline __attribute__((always_inline)) void mpm_stretch_extent(double *e, const double h[4][LONG], uint32_t b)
+{
+    const size_t at = 8 * (size_t)b;
+    const v8 fxx = v8_set(1.0) + v8_load(h[0] + at), fxy = v8_load(h[1] + at), fyx = v8_load(h[2] + at), fyy = v8_set(1.0) + v8_load(h[3] + at);
+    const v8 axx = v8_load(e), ayy = v8_load(e + 8), axy = v8_load(e + 16);
+    const v8 bxx = fxx * axx + fxy * axy, bxy = fxx * axy + fxy * ayy, byx = fyx * axx + fyy * axy, byy = fyx * axy + fyy * ayy;
+    v8_store(e, bxx * fxx + bxy * fxy);
+    v8_store(e + 8, byx * fyx + byy * fyy);
+    v8_store(e + 16, bxx * fyx + bxy * fyy);
+}
+
+#endif
