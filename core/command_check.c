@@ -25,11 +25,15 @@ int ab_command_check(const ab_command_line *line) {
     }
     ab_registry *registry = NULL;
     ab_scene *scene = NULL;
-    const ab_status status = ab_command_scene(line, &registry, &scene, report);
-    if (status == AB_OK) {
+    ab_status status = ab_command_scene(line, &registry, &scene, report);
+    if (status == AB_OK) { /* bodies and plugins are made too: only they know what settings together make no sense */
+        const ab_run_options options = {.threads = 1, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
+        ab_schedule *schedule = NULL;
+        status = ab_schedule_create(scene, &options, &schedule, report);
+        ab_schedule_destroy(schedule);
         const size_t warnings = ab_report_warnings(report);
         ab_report_print(report, stderr);
-        print_ok(line->words[0], scene, warnings);
+        if (status == AB_OK) print_ok(line->words[0], scene, warnings);
         ab_scene_destroy(scene);
         ab_registry_destroy(registry);
     }

@@ -2,7 +2,6 @@
 #include "core/commands.h"
 
 #include <limits.h>
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,38 +23,6 @@ static void default_folder(const char *scene, char *folder, size_t size) {
     snprintf(folder, size, "results/%s", name[0] ? name : "scene");
 }
 
-/* Area of the box around a shape, m2. */
-static double area_around(const ab_shape_spec *shape) {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, sum = 0.0;
-    switch (shape->kind) {
-    case AB_SHAPE_BOX: return (shape->high[0] - shape->low[0]) * (shape->high[1] - shape->low[1]);
-    case AB_SHAPE_DISC:
-    case AB_SHAPE_RING: return 4.0 * shape->radius * shape->radius;
-    case AB_SHAPE_POLYGON:
-        for (size_t v = 0; v < shape->count; v++)
-            for (int c = 0; c < 2; c++) {
-                low[c] = fmin(low[c], shape->vertices[v][c]);
-                high[c] = fmax(high[c], shape->vertices[v][c]);
-            }
-        return shape->count ? (high[0] - low[0]) * (high[1] - low[1]) : 0.0;
-    case AB_SHAPE_UNION:
-        for (size_t m = 0; m < shape->count; m++) sum += area_around(&shape->members[m]);
-        return sum;
-    }
-    return 0.0;
-}
-
-/* Threads that the scene is worth: below some thousand points each they wait for one another longer than they work, above all on a machine
- * that has other things to do. Any number gives the same results. */
-static int threads_worth(const ab_scene *scene) {
-    const double points_each = 2000.0;
-    double points = 0.0;
-    for (size_t b = 0; b < scene->body_count; b++)
-        points += area_around(&scene->bodies[b].shape) / (scene->grid_cell * scene->grid_cell) * scene->bodies[b].per_cell;
-    const double worth = fmax(1.0, points / points_each);
-    return worth < omp_get_max_threads() ? (int)worth : omp_get_max_threads();
-}
-
 static int with_scene(const ab_command_line *line,
                       ab_status (*act)(const ab_command_line *, const ab_scene *, const ab_run_options *, ab_report *)) {
     ab_report *report = ab_report_create();
@@ -70,7 +37,7 @@ static int with_scene(const ab_command_line *line,
         char folder[PATH_MAX + 16];
         default_folder(line->words[0], folder, sizeof folder);
         const ab_run_options options = {.folder = line->output ? line->output : folder,
-                                        .threads = line->threads ? line->threads : threads_worth(scene),
+                                        .threads = line->threads ? line->threads : omp_get_max_threads(),
                                         .quiet = line->quiet,
                                         .strict = line->strict,
                                         .methods = line->methods,

@@ -265,8 +265,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     facts.bytes_per_point = s->points ? bytes / s->points : 0;
     ab_schedule_view(s, &view);
     size_t missed = 0;
-    ab_status closed = AB_OK;
-    if (status != AB_OK) closed = ab_results_frame(results, &view, report); /* what was computed is not lost */
+    const ab_status closed = ab_results_frame(results, &view, report); /* the end, as far as it came */
     if (!options->quiet) ab_results_table(results, &view, &facts, stdout);
     const ab_status written = ab_results_close(results, &view, &facts, &missed, report);
     if (status == AB_OK) status = closed != AB_OK ? closed : written;
