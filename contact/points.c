@@ -76,6 +76,29 @@ static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const
     return sum;
 }
 
+/* True where component c of every dof of point i is held, on both sides. */
+static bool all_held(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, size_t c)
+{
+    for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s)
+        if (a->inverse_mass[(size_t)v->a_dof[s] * a->mass_stride + c] != 0.0) return false;
+    for (size_t s = v->b_start[i]; s < v->b_start[i + 1]; ++s)
+        if (b->inverse_mass[(size_t)v->b_dof[s] * b->mass_stride + c] != 0.0) return false;
+    return true;
+}
+
+/* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
+ * degrees: the normal's). A normal that is oblique by however little would let normal and tangential answers work on the same freedom, each as if it were
+ * alone, and the loop would swing for ever. */
+static void fit_normal_to_sides(ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b)
+{
+    const bool x = all_held(v, i, a, b, 0), y = all_held(v, i, a, b, 1);
+    if (x == y) return;
+    double *held = v->normal + (x ? 0 : v->ld) + i, *left = v->normal + (x ? v->ld : 0) + i;
+    const bool normal = fabs(*left) >= 0.5;
+    *left = normal ? copysign(1.0, *left) : 0.0;
+    *held = normal ? 0.0 : copysign(1.0, *held);
+}
+
 static int compare_dofs(const void *a, const void *b)
 {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
@@ -154,6 +177,7 @@ bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_d
     double *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
     bool held = false;
     for (size_t i = 0; i < v->count; ++i) {
+        fit_normal_to_sides(v, i, a, b);
         const double nx = v->normal[i], ny = v->normal[v->ld + i];
         const double in = inverse_mass(v, i, a, b, nx, ny, &held), it = inverse_mass(v, i, a, b, -ny, nx, &held);
         mn[i] = in > 0.0 ? 1.0 / in : 0.0;
