@@ -2,13 +2,14 @@
  * impulse each point wants, change both sides' dofs by the difference, until the impulses stand still (numerics 4). Linear momentum is kept because a
  * point takes from one side what it gives to the other. */
 #include <math.h>
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "contact/contact.h"
 
-enum { MOST_ROUNDS = 200 };
+enum { MOST_ROUNDS = 200, NODES_PER_THREAD = 32 };
 static const double STANDSTILL = 1e-13; /* change of an impulse against the largest one of the step */
 
 typedef struct contact_all {
@@ -151,8 +152,16 @@ static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report
     if (pair->node_count) {
         ab_trace a = {0}, b = {0};
         const uint32_t needs = pair->spec->finder->class_.needs;
-        AB_TRY(pair->a->ops->trace(pair->a, pair->nodes_a, pair->node_count, needs, &a, report));
-        AB_TRY(pair->b->ops->trace(pair->b, pair->nodes_b, pair->node_count, needs, &b, report));
+        ab_status of_a = AB_OK, of_b = AB_OK; /* two bodies, two threads where there are two and the work is worth it */
+#pragma omp parallel sections num_threads(2) if (pair->node_count >= NODES_PER_THREAD && omp_get_max_threads() > 1)
+        {
+#pragma omp section
+            of_a = pair->a->ops->trace(pair->a, pair->nodes_a, pair->node_count, needs, &a, report);
+#pragma omp section
+            of_b = pair->b->ops->trace(pair->b, pair->nodes_b, pair->node_count, needs, &b, report);
+        }
+        AB_TRY(of_a);
+        AB_TRY(of_b);
         p->cell = a.cell;
         if (pair->spec->finder->contact.find(pair->finder, &a, &b, p) != 0) return complain(pair, &pair->finder_service, "finding", report);
     }

@@ -3,6 +3,7 @@
 #include "core/scheduler.h"
 
 #include <math.h>
+#include <omp.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +42,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     s->energy_start = calloc(s->body_count + 1, sizeof *s->energy_start);
     s->motion = calloc(s->body_count + 1, sizeof *s->motion);
     s->limit = "";
+    omp_set_num_threads(options->threads);
     ab_status status = s->domains && s->energy && s->energy_start && s->motion ? AB_OK : ab_report_failure(report, "no memory for %zu bodies", s->body_count);
     for (size_t b = 0; status == AB_OK && b < s->body_count; ++b) {
         const ab_body_spec *spec = scene->bodies + b;
