@@ -115,14 +115,11 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
     const int nodes = body->kernel->nodes;
     const size_t ld = t->capacity;
     bool reached[PATCH_NODES] = {false}; /* by the stencil that begins here */
-    for (int j = 0; j + nodes <= PATCH; ++j)
-        for (int i = 0; i + nodes <= PATCH; ++i)
-            for (int jj = 0; jj < nodes; ++jj)
-                for (int ii = 0; ii < nodes; ++ii)
-                    if (wanted[(j + jj) * PATCH + i + ii]) reached[j * PATCH + i] = true;
     double low[2] = {PATCH, PATCH}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
     for (int n = 0; n < PATCH_NODES; ++n) {
         if (!wanted[n]) continue;
+        for (int j = 0; j < nodes && j <= n / PATCH; ++j)
+            for (int i = 0; i < nodes && i <= n % PATCH; ++i) reached[n - j * PATCH - i] = true;
         const double at[2] = {n % PATCH - 1, n / PATCH - 1};
         for (int c = 0; c < 2; ++c) {
             if (at[c] < low[c]) low[c] = at[c];
