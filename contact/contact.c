@@ -191,7 +191,8 @@ static ab_status prepare(contact_pair *pair, ab_report *report)
 }
 
 /* Forces, work and penetration of the step just solved. The work of an impulse is impulse . (old + new relative velocity)/2, exact for what it
- * does to the dofs' kinetic energy; its normal part is contact loss, its tangential part friction. */
+ * does to the dofs' kinetic energy. Friction is the part that meets slip which goes on, tangential impulse . new slip: never negative for a law that opposes
+ * slip, and zero where the points stick. All the rest is contact loss: what normal impulses take, and what stopping a slip at once takes. */
 static void book(contact_all *all, size_t number, const ab_step *step)
 {
     contact_pair *pair = all->pairs + number;
@@ -211,9 +212,9 @@ static void book(contact_all *all, size_t number, const ab_step *step)
         double v[2];
         relative_velocity(pair, &a, &b, false, i, v);
         const double mx = 0.5 * (v[0] + points->relative_old[i]), my = 0.5 * (v[1] + points->relative_old[p->ld + i]);
-        const double jn = jx * nx + jy * ny, jt = jy * nx - jx * ny, mn = mx * nx + my * ny, mt = my * nx - mx * ny;
-        friction += jt * mt;
-        loss += jn * mn;
+        const double jn = jx * nx + jy * ny, jt = jy * nx - jx * ny, slip = v[1] * nx - v[0] * ny;
+        friction += jt * slip;
+        loss += jx * mx + jy * my - jt * slip;
         t->impulse[0] += jx;
         t->impulse[1] += jy;
         t->normal_force += fabs(jn) / step->dt;

@@ -32,6 +32,8 @@ static void destroy(void *self)
     law->host->release(law->host->context, law);
 }
 
+static const double TOUCH = 1e-3; /* of a cell: bodies no further apart touch, for adhesion and tension; gaps are no better known than this */
+
 static int respond(void *self, ab_points *p, size_t first, size_t count)
 {
     const coulomb *law = self;
@@ -43,7 +45,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count)
             normal_impulse += p->impulse[c * ld + i] * p->normal[c * ld + i];
         }
         const double gap = p->gap[i], area_dt = p->area[i] * p->dt;
-        const int touching = gap <= 0.0;
+        const int touching = gap <= TOUCH * p->cell;
         const double tension = touching ? law->tensile_strength * area_dt : 0.0;
         const double lambda = fmax(-tension, normal_impulse + p->normal_mass[i] * (approach - fmax(gap, 0.0) / p->dt));
         double limit = law->friction * fmax(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
