@@ -1,0 +1,42 @@
+#!/bin/bash
+# cost: 75
+# The block on an incline of 20 and 30 degrees with six values of friction, held to the twelve answers, printed as a table; then the same with the grid moved by 0.37
+# of a cell. test_incline.sh BUILD
+set -eu
+build=${1:?the build folder}
+scratch=${ABUT_SCRATCH:-$(mktemp -d)}
+scene=cases/block_on_incline/scene.yaml
+one() { # name, settings
+    local name=$1
+    shift
+    "$build/abut" run $scene --quiet -j 1 -o "$scratch/$name" --set output.every=0 "$@"
+}
+for degrees in 20 30; do
+    for mu in 0 0.1 0.2 0.3 0.4 0.5; do
+        one ${degrees}_$mu --set constants.degrees=$degrees --set constants.mu=$mu
+    done
+done
+for mu in 0.2 0.4; do
+    one 20_${mu}_moved --set constants.mu=$mu --set constants.shift=0.0925
+done
+python3 - "$scratch" <<'PYTHON'
+import json
+import math
+import sys
+
+runs = [f"{d}_{m}" for d in (20, 30) for m in ("0", "0.1", "0.2", "0.3", "0.4", "0.5")] + ["20_0.2_moved", "20_0.4_moved"]
+missed = 0
+print(f"{'case':14} {'s(1), m':>10} {'reference':>10}   error of s, acceleration, speed, friction, normal force, ledger")
+for run in runs:
+    with open(f"{sys.argv[1]}/{run}/summary.json") as stream:
+        expects = json.load(stream)["expects"]
+    slip = expects[0]["value"] - 2.5
+    degrees, mu = run.split("_")[:2]
+    angle = math.radians(float(degrees))
+    reference = 9.81 / 2 * max(0.0, math.sin(angle) - float(mu) * math.cos(angle))
+    assert abs(expects[0]["reference"] - 2.5 - reference) < 1e-9, run
+    assert len(expects) == 6, run
+    print(f"{run:14} {slip:10.6f} {reference:10.6f}  ", "  ".join(f"{e['error']:.1e}{'' if e['pass'] else ' MISSED'}" for e in expects))
+    missed += sum(not e["pass"] for e in expects)
+sys.exit(f"{missed} missed" if missed else 0)
+PYTHON
