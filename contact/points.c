@@ -5,8 +5,7 @@
 
 #include "contact/contact.h"
 
-static bool resize(void *pointer, size_t old_rows, size_t rows, size_t old_ld, size_t ld, size_t size)
-{
+static bool resize(void *pointer, size_t old_rows, size_t rows, size_t old_ld, size_t ld, size_t size) {
     char **p = pointer;
     char *more = aligned_alloc(64, (rows * ld * size + 63) / 64 * 64);
     if (!more) return false;
@@ -17,18 +16,20 @@ static bool resize(void *pointer, size_t old_rows, size_t rows, size_t old_ld, s
     return true;
 }
 
-bool contact_points_reserve(contact_points *points, size_t count, size_t stencil)
-{
+bool contact_points_reserve(contact_points *points, size_t count, size_t stencil) {
     ab_points *v = &points->view;
     if (count > v->capacity || !v->normal) {
         const size_t old = v->capacity, n = (2 * count + 64) / 8 * 8, s = points->states;
-        double *state0 = (double *)(uintptr_t)v->state0, *relative = (double *)(uintptr_t)v->relative_velocity, *mn = (double *)(uintptr_t)v->normal_mass,
-               *mt = (double *)(uintptr_t)v->tangential_mass;
-        if (!resize(&v->key, 1, 1, old, n, sizeof *v->key) || !resize(&v->normal, 2, 2, old, n, sizeof(double)) || !resize(&v->position, 2, 2, old, n, sizeof(double)) || !resize(&v->gap, 1, 1, old, n, sizeof(double)) ||
-            !resize(&v->area, 1, 1, old, n, sizeof(double)) || !resize(&relative, 2, 2, old, n, sizeof(double)) || !resize(&mn, 1, 1, old, n, sizeof(double)) ||
-            !resize(&mt, 1, 1, old, n, sizeof(double)) || !resize(&v->impulse, 2, 2, old, n, sizeof(double)) || !resize(&state0, s, s, old, n, sizeof(double)) ||
+        double *state0 = (double *)(uintptr_t)v->state0, *relative = (double *)(uintptr_t)v->relative_velocity,
+               *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
+        if (!resize(&v->key, 1, 1, old, n, sizeof *v->key) || !resize(&v->normal, 2, 2, old, n, sizeof(double)) ||
+            !resize(&v->position, 2, 2, old, n, sizeof(double)) || !resize(&v->gap, 1, 1, old, n, sizeof(double)) ||
+            !resize(&v->area, 1, 1, old, n, sizeof(double)) || !resize(&relative, 2, 2, old, n, sizeof(double)) ||
+            !resize(&mn, 1, 1, old, n, sizeof(double)) || !resize(&mt, 1, 1, old, n, sizeof(double)) ||
+            !resize(&v->impulse, 2, 2, old, n, sizeof(double)) || !resize(&state0, s, s, old, n, sizeof(double)) ||
             !resize(&v->state1, s, s, old, n, sizeof(double)) || !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) ||
-            !resize(&points->applied, 2, 2, old, n, sizeof(double)) || !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
+            !resize(&points->applied, 2, 2, old, n, sizeof(double)) ||
+            !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
             !resize(&v->b_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)))
             return false;
         v->state0 = state0;
@@ -50,18 +51,18 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
     return true;
 }
 
-void contact_points_destroy(contact_points *points)
-{
+void contact_points_destroy(contact_points *points) {
     ab_points *v = &points->view;
-    free(v->key), free(v->normal), free(v->position), free(v->gap), free(v->area), free((void *)(uintptr_t)v->relative_velocity), free((void *)(uintptr_t)v->normal_mass);
-    free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1), free(points->relative_old);
+    free(v->key), free(v->normal), free(v->position), free(v->gap), free(v->area), free((void *)(uintptr_t)v->relative_velocity),
+        free((void *)(uintptr_t)v->normal_mass);
+    free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1),
+        free(points->relative_old);
     free(points->applied), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
 }
 
 /* Inverse effective mass in direction d: sum w^2 d.M^-1.d over both sides. */
-static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, double dx, double dy, bool *held)
-{
+static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, double dx, double dy, bool *held) {
     double sum = 0.0;
     for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s) {
         const double *m = a->inverse_mass + (size_t)v->a_dof[s] * a->mass_stride, w = v->a_weight[s];
@@ -77,8 +78,7 @@ static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const
 }
 
 /* True where component c of every dof of point i is held, on both sides. */
-static bool all_held(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, size_t c)
-{
+static bool all_held(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, size_t c) {
     for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s)
         if (a->inverse_mass[(size_t)v->a_dof[s] * a->mass_stride + c] != 0.0) return false;
     for (size_t s = v->b_start[i]; s < v->b_start[i + 1]; ++s)
@@ -89,8 +89,7 @@ static bool all_held(const ab_points *v, size_t i, const ab_dofs *a, const ab_do
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
  * degrees: the normal's). A normal that is oblique by however little would let normal and tangential answers work on the same freedom, each as if it were
  * alone, and the loop would swing for ever. */
-static void fit_normal_to_sides(ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b)
-{
+static void fit_normal_to_sides(ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b) {
     const bool x = all_held(v, i, a, b, 0), y = all_held(v, i, a, b, 1);
     if (x == y) return;
     double *held = v->normal + (x ? 0 : v->ld) + i, *left = v->normal + (x ? v->ld : 0) + i;
@@ -99,15 +98,13 @@ static void fit_normal_to_sides(ab_points *v, size_t i, const ab_dofs *a, const 
     *held = normal ? 0.0 : copysign(1.0, *held);
 }
 
-static int compare_dofs(const void *a, const void *b)
-{
+static int compare_dofs(const void *a, const void *b) {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);
 }
 
 /* True when some dof serves more than one point of this pair. Stencils that are one node each, in ascending order, never do. */
-static int shares_dofs(const size_t *start, const uint32_t *dof, size_t count)
-{
+static int shares_dofs(const size_t *start, const uint32_t *dof, size_t count) {
     bool ascending = start[count] == count;
     for (size_t k = 1; ascending && k < count; ++k) ascending = dof[k] > dof[k - 1];
     if (ascending) return 0;
@@ -123,32 +120,34 @@ static int shares_dofs(const size_t *start, const uint32_t *dof, size_t count)
 }
 
 /* Brings the states of points that were there in the last step (same key) into state0; new ones begin at 0. */
-static void recall(contact_points *points)
-{
+static void recall(contact_points *points) {
     ab_points *v = &points->view;
     double *state0 = (double *)(uintptr_t)v->state0;
     for (size_t i = 0; i < v->count; ++i) {
         size_t low = 0, high = points->old_count;
         while (low < high) {
             const size_t middle = (low + high) / 2;
-            if (points->old_key[middle] < v->key[i]) low = middle + 1;
-            else high = middle;
+            if (points->old_key[middle] < v->key[i])
+                low = middle + 1;
+            else
+                high = middle;
         }
         const bool known = low < points->old_count && points->old_key[low] == v->key[i];
         for (size_t s = 0; s < points->states; ++s) state0[s * v->ld + i] = known ? points->old_state[s * points->old_capacity + low] : 0.0;
     }
 }
 
-typedef struct remembered { uint64_t key; uint32_t point; } remembered;
+typedef struct remembered {
+    uint64_t key;
+    uint32_t point;
+} remembered;
 
-static int compare_remembered(const void *a, const void *b)
-{
+static int compare_remembered(const void *a, const void *b) {
     const remembered *x = a, *y = b;
     return (x->key > y->key) - (x->key < y->key);
 }
 
-void contact_points_remember(contact_points *points)
-{
+void contact_points_remember(contact_points *points) {
     ab_points *v = &points->view;
     remembered *list = malloc((v->count + 1) * sizeof *list);
     if (!list) {
@@ -171,8 +170,7 @@ void contact_points_remember(contact_points *points)
     free(list);
 }
 
-bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_dofs *b)
-{
+bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_dofs *b) {
     ab_points *v = &points->view;
     double *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
     bool held = false;

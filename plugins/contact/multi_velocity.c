@@ -16,16 +16,21 @@ typedef struct multi_velocity {
 } multi_velocity;
 
 static const ab_param PARAMS[] = {
-    {"normal", "1", "normal of a shared node: average of both bodies' (with the corner rule), from the gradient of mass or of volume, the stiffer body's, or a direction out of the first body",
+    {"normal", "1",
+     "normal of a shared node: average of both bodies' (with the corner rule), from the gradient of mass or of volume, the stiffer body's, "
+     "or a direction out of the first body",
      "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
-    {"gap", "1", "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical form: early and lossy)", "distance|none",
-     AB_CHOICE, 0, 0, 0, 0},
-    {"corner_angle", "rad", "corner rule of `average`: where the two bodies' normals disagree by more than this, the direction of closest approach of their material is taken", NULL,
-     AB_REAL, 0, 0.02, 0.0, 3.2},
+    {"gap", "1",
+     "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical "
+     "form: early and lossy)",
+     "distance|none", AB_CHOICE, 0, 0, 0, 0},
+    {"corner_angle", "rad",
+     "corner rule of `average`: where the two bodies' normals disagree by more than this, the direction of closest approach of their "
+     "material is taken",
+     NULL, AB_REAL, 0, 1e-6, 0.0, 3.2},
 };
 
-static int create(const ab_host *host, const ab_value *settings, void **self)
-{
+static int create(const ab_host *host, const ab_value *settings, void **self) {
     multi_velocity *mv = host->allocate(host->context, sizeof *mv);
     if (!mv) return -1;
     mv->host = host;
@@ -37,14 +42,12 @@ static int create(const ab_host *host, const ab_value *settings, void **self)
     return 0;
 }
 
-static void destroy(void *self)
-{
+static void destroy(void *self) {
     multi_velocity *mv = self;
     mv->host->release(mv->host->context, mv);
 }
 
-static double unit(double *v, uint32_t dimension)
-{
+static double unit(double *v, uint32_t dimension) {
     double square = 0.0;
     for (uint32_t c = 0; c < dimension; ++c) square += v[c] * v[c];
     const double length = sqrt(square);
@@ -54,8 +57,7 @@ static double unit(double *v, uint32_t dimension)
 }
 
 /* Half size of near point k in direction n: sqrt(n.A.n). */
-static double half_size(const ab_trace *t, size_t k, const double n[3])
-{
+static double half_size(const ab_trace *t, size_t k, const double n[3]) {
     const double *e = t->near_extent + k;
     const size_t ld = t->near_ld;
     const double square = t->dimension == 2 ? n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]
@@ -66,8 +68,7 @@ static double half_size(const ab_trace *t, size_t k, const double n[3])
 
 /* How far the material of a body reaches along +-n from the node: the largest of sign n.(x - x_i) + half size, over the points beside the node (within half
  * a cell across the normal); over all points near it where none is. */
-static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
-{
+static double reach(const ab_trace *t, size_t i, const double n[3], double sign) {
     const uint32_t d = t->dimension;
     const size_t ld = t->near_ld;
     double beside = -INFINITY, all = -INFINITY;
@@ -87,58 +88,74 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
 }
 
 /* Distance of the two bodies' material along n at shared node i, m; negative: they overlap. */
-static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) { return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0); }
+static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
+    return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0);
+}
 
-/* Distance along direction `angle` between the material of both bodies near node i, m; negative: overlap. All points near the node count, so over all
- * directions the largest distance belongs to the direction of closest approach of the two (the direction of least penetration). Two dimensions. */
-static double clearance(const ab_trace *a, const ab_trace *b, size_t i, double angle)
-{
-    const double n[3] = {cos(angle), sin(angle), 0.0};
-    double sum = 0.0;
+typedef struct clearance {
+    double angle, distance, slope;
+} clearance; /* rad, m, m per rad */
+
+/* Distance along direction `angle` between the material of both bodies near node i (negative: overlap) and how it changes with the angle: what the two points
+ * that reach furthest say. Over all directions the largest distance belongs to the direction of closest approach. Two dimensions. */
+static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, double angle) {
+    const double c = cos(angle), s = sin(angle);
+    clearance seen = {.angle = angle};
     for (int side = 0; side < 2; ++side) {
         const ab_trace *t = side ? b : a;
         const double sign = side ? -1.0 : 1.0;
+        const double *x = t->near_position, *y = x + t->near_ld, *xx = t->near_extent, *yy = xx + t->near_ld, *xy = yy + t->near_ld;
         double far = -INFINITY;
-        for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k)
-            far = fmax(far, sign * (t->near_position[k] * n[0] + t->near_position[t->near_ld + k] * n[1]) + half_size(t, k, n));
-        sum -= far;
+        size_t furthest = t->near_start[i];
+        for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+            const double reaches = sign * (x[k] * c + y[k] * s) + sqrt(fmax(c * c * xx[k] + s * s * yy[k] + 2.0 * c * s * xy[k], 0.0));
+            if (reaches > far) far = reaches, furthest = k;
+        }
+        const size_t k = furthest;
+        const double half = sqrt(fmax(c * c * xx[k] + s * s * yy[k] + 2.0 * c * s * xy[k], 0.0));
+        seen.distance -= far;
+        seen.slope -= sign * (y[k] * c - x[k] * s) + (half > 0.0 ? (c * s * (yy[k] - xx[k]) + (c * c - s * s) * xy[k]) / half : 0.0);
     }
-    return sum;
+    return seen;
 }
 
-/* Turns n to the direction of closest approach: uphill in steps, then by the golden section. On a face it is the face's normal to rounding, also where the
- * other body shows only an edge or a single point. */
-static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, double n[3])
-{
-    static const double STEP = 0.15, FINE = 1e-7, GOLDEN = 0.6180339887498949, PI = 3.141592653589793;
-    double middle = atan2(n[1], n[0]), best = clearance(a, b, i, middle);
-    const double up = clearance(a, b, i, middle + STEP), down = clearance(a, b, i, middle - STEP);
-    double step = up >= down ? STEP : -STEP, next = fmax(up, down);
-    for (double turned = 0.0; next > best && turned < PI; turned += STEP) {
-        middle += step;
-        best = next;
-        next = clearance(a, b, i, middle + step);
+/* The direction of closest approach, out of a, from the best of three guesses (cosine and sine each): uphill until the slope turns, then to where the tangents
+ * of both ends meet, until the distance there is what they promise. On a face it is the face's normal to rounding, also where the other body shows only an
+ * edge or a single point. */
+static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], double n[3]) {
+    static const double FIRST_STEP = 0.02, ROUNDING = 1e-13, PI = 3.141592653589793;
+    enum { MOST = 60 };
+    clearance low = {.distance = -INFINITY}, high;
+    for (int k = 0; k < 3; ++k) {
+        const clearance seen = look_along(a, b, i, atan2(guess[k][1], guess[k][0]));
+        if (seen.distance > low.distance) low = seen;
     }
-    double low = middle - STEP, high = middle + STEP;
-    double x = high - GOLDEN * (high - low), y = low + GOLDEN * (high - low), at_x = clearance(a, b, i, x), at_y = clearance(a, b, i, y);
-    while (high - low > FINE) {
-        if (at_x >= at_y) {
-            high = y, y = x, at_y = at_x;
-            at_x = clearance(a, b, i, x = high - GOLDEN * (high - low));
-        } else {
-            low = x, x = y, at_x = at_y;
-            at_y = clearance(a, b, i, y = low + GOLDEN * (high - low));
-        }
+    high = low;
+    const double begin = low.angle;
+    for (double step = FIRST_STEP; low.slope < 0.0 && begin - low.angle < PI; step *= 2.0)
+        high = low, low = look_along(a, b, i, low.angle - step);
+    for (double step = FIRST_STEP; high.slope > 0.0 && high.angle - begin < PI; step *= 2.0)
+        low = high, high = look_along(a, b, i, high.angle + step);
+    double angle = low.distance >= high.distance ? low.angle : high.angle;
+    for (int k = 0; k < MOST && low.slope > 0.0 && high.slope < 0.0; ++k) {
+        angle = (high.distance - high.slope * high.angle - low.distance + low.slope * low.angle) / (low.slope - high.slope);
+        if (!(angle > low.angle && angle < high.angle)) angle = 0.5 * (low.angle + high.angle);
+        const clearance middle = look_along(a, b, i, angle);
+        if (low.distance + low.slope * (angle - low.angle) - middle.distance <= ROUNDING * a->cell) break;
+        if (middle.slope > 0.0)
+            low = middle;
+        else
+            high = middle;
     }
-    n[0] = cos(0.5 * (low + high));
-    n[1] = sin(0.5 * (low + high));
+    n[0] = cos(angle);
+    n[1] = sin(angle);
 }
 
 /* The average of both normals. Where they disagree one of them is no normal: an edge, a body that only just reaches the node, the far surface of a body
  * one cell thin. There the gradient of the share of mass, m_b grad m_a - m_a grad m_b, begins (what both have in common, as the sides of two flush
- * bars or a wall beside them, cancels in it), and in two dimensions the direction of closest approach ends. */
-static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3], double n[3])
-{
+ * bars or a wall beside them, cancels in it), and in two dimensions the direction of closest approach ends, from that guess or either normal. */
+static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3],
+                           double n[3]) {
     const uint32_t d = a->dimension;
     double cosine = 0.0;
     for (uint32_t c = 0; c < d; ++c) {
@@ -147,14 +164,14 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     }
     if (cosine >= mv->corner_cosine) return;
     for (uint32_t c = 0; c < d; ++c) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
-    if (d == 2) closest_approach(a, b, i, n);
+    const double guess[3][2] = {{n[0], n[1]}, {na[0], na[1]}, {-nb[0], -nb[1]}};
+    if (d == 2) closest_approach(a, b, i, guess, n);
 }
 
 static const double LEAST_AREA = 1e-3; /* of a cell's face */
 
 /* The normal at shared node i, out of a; false where there is no contact to speak of. *area: tributary, m2. */
-static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area)
-{
+static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area) {
     const uint32_t d = a->dimension;
     double na[3] = {0}, nb[3] = {0}, va[3] = {0}, vb[3] = {0};
     for (uint32_t c = 0; c < d; ++c) {
@@ -164,14 +181,16 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     unit(na, d);
     unit(nb, d);
     n[0] = n[1] = n[2] = 0.0;
-    if (mv->normal < 0) memcpy(n, mv->direction, sizeof mv->direction);
-    else if (mv->normal == NORMAL_AVERAGE) average_normal(mv, a, b, i, na, nb, n);
+    if (mv->normal < 0)
+        memcpy(n, mv->direction, sizeof mv->direction);
+    else if (mv->normal == NORMAL_AVERAGE)
+        average_normal(mv, a, b, i, na, nb, n);
     else
         for (uint32_t c = 0; c < d; ++c)
-            n[c] = mv->normal == NORMAL_MASS_GRADIENT ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
+            n[c] = mv->normal == NORMAL_MASS_GRADIENT     ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
                    : mv->normal == NORMAL_VOLUME_GRADIENT ? va[c] - vb[c]
-                   : a->stiffness >= b->stiffness ? na[c]
-                                                  : -nb[c];
+                   : a->stiffness >= b->stiffness         ? na[c]
+                                                          : -nb[c];
     if (!(unit(n, d) > 0.0)) return 0;
     double along_a = 0.0, along_b = 0.0;
     for (uint32_t c = 0; c < d; ++c) {
@@ -184,10 +203,11 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     return *area > LEAST_AREA * face; /* less: one body only just reaches the node, and has nothing to say there */
 }
 
-static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out)
-{
+static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
     const multi_velocity *mv = self;
-    if (a->count > out->capacity && mv->host->reserve(mv->host->context, out, a->count, a->stencil_start[a->count] + b->stencil_start[b->count]) != 0) return -1;
+    if (a->count > out->capacity &&
+        mv->host->reserve(mv->host->context, out, a->count, a->stencil_start[a->count] + b->stencil_start[b->count]) != 0)
+        return -1;
     const uint32_t d = a->dimension;
     size_t n = 0;
     out->a_start[0] = out->b_start[0] = 0;
