@@ -132,7 +132,9 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
                                      "hold that side (roller, fixed) or say 'outflow' there",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0], x[1] + body->origin[1], v[0], v[1],
                                      step->time + step->dt, step->number);
-        body->energy.outflow += 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1]);
+        const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1]);
+        body->energy.outflow += carried;
+        body->energy.kinetic -= carried; /* which this step's sum holds still */
         body->sort_due = true;
     }
     return AB_OK;
