@@ -1,5 +1,5 @@
 /* contact.c: every contact of a scene in one step: find the points, then projected Gauss-Seidel over them in a fixed order: ask the response for the
- * impulse each point wants, change both sides' dofs by the difference, until the impulses stand still (numerics 4). Linear momentum is kept because a
+ * impulse each point wants, change both sides' dofs by the difference, until the impulses stand still. Linear momentum is kept because a
  * point takes from one side what it gives to the other. */
 #include <math.h>
 #include <omp.h>
@@ -60,17 +60,18 @@ static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size
     return hypot(j[0], j[1]);
 }
 
-static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, ab_report *report)
+static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report)
 {
-    return ab_report_failure(report, "contact of '%s' and '%s': %s failed: %s", pair->a->spec->name, pair->b->spec->name, what, service->message[0] ? service->message : "no reason given");
+    return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name, what, code,
+                             service->message[0] ? "the reason: " : "no reason", service->message);
 }
 
 /* The response's wishes for points first .. first + count - 1. */
 static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report)
 {
     const ab_contact_ops *ops = &pair->spec->responder->contact;
-    if (ops->respond(pair->responder, &pair->points.view, first, count) == 0) return AB_OK;
-    return complain(pair, &pair->responder_service, "the response", report);
+    const int code = ops->respond(pair->responder, &pair->points.view, first, count);
+    return code == 0 ? AB_OK : complain(pair, &pair->responder_service, "respond", code, report);
 }
 
 /* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
@@ -163,7 +164,8 @@ static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report
         AB_TRY(of_a);
         AB_TRY(of_b);
         p->cell = a.cell;
-        if (pair->spec->finder->contact.find(pair->finder, &a, &b, p) != 0) return complain(pair, &pair->finder_service, "finding", report);
+        const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
+        if (code != 0) return complain(pair, &pair->finder_service, "find", code, report);
     }
     return AB_OK;
 }
@@ -232,11 +234,33 @@ static void book(contact_all *all, size_t number, const ab_step *step)
     }
 }
 
+/* Contact keeps bodies from getting deeper into each other; it does not push apart what the scene has drawn one inside the other. Seen by points that
+ * reach into the other body, and by nodes around which both together take more room than there is. */
+static void warn_of_overlap(const contact_all *all, const contact_pair *pair, ab_report *report)
+{
+    static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume */
+    const double h = all->scene->grid_cell;
+    double deepest = 0.0, most = 0.0;
+    const ab_points *p = &pair->points.view;
+    for (size_t i = 0; i < p->count; ++i) deepest = fmax(deepest, -p->gap[i]);
+    ab_node_tiles a, b;
+    pair->a->ops->node_tiles(pair->a, &a);
+    pair->b->ops->node_tiles(pair->b, &b);
+    const double density_a = all->scene->materials[pair->a->spec->material].density, density_b = all->scene->materials[pair->b->spec->material].density;
+    for (size_t k = 0; k < pair->node_count; ++k) most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
+    if (deepest <= DEEP * h && most <= CROWDED * h * h) return;
+    ab_report_warning(report, pair->spec->mark, "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side", pair->a->spec->name,
+                      pair->b->spec->name);
+}
+
 static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report)
 {
     contact_all *all = (contact_all *)face;
     if (all->found_step != step->number) {
-        for (size_t k = 0; k < all->count; ++k) AB_TRY(find(all->pairs + k, step, report));
+        for (size_t k = 0; k < all->count; ++k) {
+            AB_TRY(find(all->pairs + k, step, report));
+            if (step->number == 0) warn_of_overlap(all, all->pairs + k, report);
+        }
         all->found_step = step->number;
     }
     size_t active = 0;

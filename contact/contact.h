@@ -1,5 +1,5 @@
 /* contact.h: the host's half of contact: which nodes bodies share, the plugins' find and respond, and the loop that applies impulses until they stand
- * still (numerics 4). Inside contact/ and for main. */
+ * still. Inside contact/ and for main. */
 #ifndef AB_CONTACT_H
 #define AB_CONTACT_H
 

@@ -17,7 +17,7 @@ typedef struct ab_step { /* one time step, the same for every domain */
     double damping;      /* local non-viscous factor in this step */
 } ab_step;
 
-/* What a body did in one step or since the start; J (per m of thickness in plane strain). numerics: the ledger. */
+/* What a body did in one step or since the start; J (per m of thickness in plane strain): the ledger. */
 typedef struct ab_energy {
     double kinetic;    /* state */
     double strain;     /* accumulated work of stress less plastic work */

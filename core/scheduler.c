@@ -17,6 +17,25 @@ static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may 
 
 static void on_signal(int number) { stop_signal = number; }
 
+/* Ways a run may be asked to end: each closes its files first. Writing past a file-size limit is an error of the write, not a death. */
+enum { ENDINGS = 3 };
+static const int ENDING[ENDINGS] = {SIGINT, SIGTERM, SIGHUP};
+typedef struct signal_keeper { struct sigaction ending[ENDINGS], size; } signal_keeper;
+
+static void catch_signals(signal_keeper *old)
+{
+    const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    stop_signal = 0;
+    for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &action, &old->ending[k]);
+    sigaction(SIGXFSZ, &ignore, &old->size);
+}
+
+static void release_signals(const signal_keeper *old)
+{
+    for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &old->ending[k], NULL);
+    sigaction(SIGXFSZ, &old->size, NULL);
+}
+
 static double seconds(clockid_t clock)
 {
     struct timespec t;
@@ -216,6 +235,8 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     AB_TRY(ab_schedule_create(scene, options, &s, report));
     warn_of_dt(s, report);
     ab_report_print(report, stderr);
+    signal_keeper keeper;
+    catch_signals(&keeper); /* before the first byte is written: a full disk or a signal must not end the program where nothing is said */
     ab_state_view view;
     ab_schedule_view(s, &view);
     ab_results *results = NULL;
@@ -224,15 +245,10 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status != AB_OK) {
         ab_results_destroy(results);
         ab_schedule_destroy(s);
+        release_signals(&keeper);
         return status;
     }
     for (size_t b = 0; b < s->body_count; ++b) s->points += s->domains[b]->ops->count(s->domains[b]);
-    const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
-    struct sigaction old_int, old_term, old_size;
-    stop_signal = 0;
-    sigaction(SIGINT, &action, &old_int);
-    sigaction(SIGTERM, &action, &old_term);
-    sigaction(SIGXFSZ, &ignore, &old_size);
     ab_progress progress;
     ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points);
     ab_text plan_json = {0};
@@ -244,7 +260,8 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
                           .points = s->points, .version = ABUT_VERSION, .outcome = "done", .plan_json = plan_json.failed ? NULL : plan_json.bytes};
     char outcome[256];
     if (status != AB_OK) {
-        snprintf(outcome, sizeof outcome, "failed: %s", ab_report_text(report, ab_report_errors(report) ? 0 : 1));
+        const char *why = ab_report_text(report, 0);
+        snprintf(outcome, sizeof outcome, "failed: %s", why ? why : "no reason given");
         facts.outcome = outcome;
     } else if (stop_signal) {
         snprintf(outcome, sizeof outcome, "stopped by signal %d", (int)stop_signal);
@@ -275,8 +292,6 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     ab_results_destroy(results);
     ab_text_clear(&plan_json);
     ab_schedule_destroy(s);
-    sigaction(SIGINT, &old_int, NULL);
-    sigaction(SIGTERM, &old_term, NULL);
-    sigaction(SIGXFSZ, &old_size, NULL);
+    release_signals(&keeper);
     return status;
 }

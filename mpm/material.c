@@ -68,9 +68,13 @@ ab_status mpm_material_start(mpm_body *body, ab_report *report)
                       .state1 = rows.states ? state1[0] : NULL, .dissipation = (loaded->class_.gives & AB_GIVE_DISSIPATION) ? dissipation : NULL, .wave_speed = speed, .flag = flag};
     int (*call)(void *, ab_batch *) = loaded->material.start ? loaded->material.start : loaded->material.update;
     const int code = call(body->self, &batch);
-    if (code != 0 || !(speed[0] > 0.0) || !isfinite(speed[0]))
-        return ab_report_error(report, body->material->mark, "material '%s' (%s) could not start: %s", body->material->name, loaded->class_.name,
-                               body->service.message[0] ? body->service.message : "it gives no wave speed");
+    const char *what = loaded->material.start ? "start" : "update", *name = body->material->name, *why = body->service.message;
+    if (code != 0)
+        return ab_report_error(report, body->material->mark, "material '%s' (%s) could not start: its %s returned %d and gave %s%s", name, loaded->class_.name, what, code,
+                               why[0] ? "the reason: " : "no reason", why);
+    if (!(speed[0] > 0.0) || !isfinite(speed[0]))
+        return ab_report_error(report, body->material->mark, "material '%s' (%s) could not start: its %s must set a wave speed above 0 when asked for it, and set %g m/s", name,
+                               loaded->class_.name, what, speed[0]);
     body->wave_speed = speed[0];
     body->modulus = speed[0] * speed[0] * body->material->density;
     for (size_t b = 0; b < body->block_count; ++b) {

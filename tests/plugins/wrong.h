@@ -70,6 +70,7 @@ __attribute__((unused)) static int update(void *self, ab_batch *batch) {
     (void)self;
     for (size_t i = 0; i < batch->count; i++)
         for (uint32_t c = 0; c < batch->components; c++) batch->stress1[c * batch->ld + i] = batch->stress0[c * batch->ld + i];
+    for (size_t i = 0; i < batch->count && batch->wave_speed; i++) batch->wave_speed[i] = sqrt(wrong_sink / batch->density[i]);
     return 0;
 }
 
