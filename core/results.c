@@ -2,6 +2,8 @@
  * results of an earlier run in the same folder are replaced. */
 #include "core/results.h"
 
+#include <dirent.h>
+#include <fnmatch.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +59,10 @@ static ab_status clear(const ab_results *results, ab_report *report) {
         unlink(path);
         free(path);
     }
+    DIR *folder = opendir(results->folder); /* results_BODY.xdmf: the bodies may have had other names */
+    for (const struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;)
+        if (fnmatch("results_*.xdmf", entry->d_name, 0) == 0) unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder != NULL) closedir(folder);
     return AB_OK;
 }
 
@@ -146,6 +152,16 @@ ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_re
     return frame(results, view, report);
 }
 
+/* A run whose ledger is left open by more than this part of the energy that moved is no result to build on, and says so. */
+static const double ALARM = 0.1;
+
+static void alarm_of_remainder(const ab_results *results, const ab_state_view *view, ab_report *report) {
+    const double moved = ab_results_moved(results, view);
+    if (!(moved > 0.0) || !(fabs(view->remainder) > ALARM * moved)) return;
+    ab_report_warning(report, view->scene->mark_time, "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; a finer grid, basis gimp, "
+                      "update musl or a smaller dt may help", view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved);
+}
+
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */
 ab_status ab_results_close(ab_results *results, const ab_state_view *view, const ab_run_facts *facts, size_t *missed, ab_report *report) {
     const ab_status parts[] = {
@@ -156,6 +172,7 @@ ab_status ab_results_close(ab_results *results, const ab_state_view *view, const
         results->frames != NULL ? ab_frames_finish(results->frames, report) : AB_OK,
         ab_summary_write(results, view, facts, report),
     };
+    alarm_of_remainder(results, view, report);
     *missed = 0;
     for (size_t e = 0; e < results->expect_count; e++) *missed += ab_expect_end(&results->expects[e]).pass ? 0 : 1;
     for (size_t part = 0; part < sizeof parts / sizeof *parts; part++)

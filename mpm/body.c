@@ -1,4 +1,5 @@
 /* body.c: a material-point body as the scheduler sees it: its table of functions, from creation to ledger. */
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,18 +72,20 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
 static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report)
 {
     mpm_loads_follow(body, step);
-    body->culprit = -1;
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) && (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) &&
                            step->number % WAVE_SPEED_EVERY == 0;
     int failed = 0;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads) reduction(| : failed)
+    const int none = INT_MAX;
+    int first = none; /* block of the first tile that failed, whichever thread met it */
+#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads) reduction(| : failed) reduction(min : first)
     for (size_t k = 0; k < body->tile_count; ++k) {
         if (body->tiles[k].patch < 0) continue;
-        failed |= body->kernel->stress(body, k, step, advance, body->sums + k) != 0;
+        const int culprit = body->kernel->stress(body, k, step, advance, body->sums + k);
+        if (culprit >= 0) failed = 1, first = culprit < first ? culprit : first;
         if (fuse) body->kernel->scatter(body, k);
     }
     if (failed) {
-        const double *x = mpm_block(body, (size_t)(body->culprit < 0 ? 0 : body->culprit));
+        const double *x = mpm_block(body, (size_t)first);
         return ab_report_failure(report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m: %s; a smaller dt or a finer grid may help", body->material->name,
                                  body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
                                  body->service.message[0] ? body->service.message : "no reason given");

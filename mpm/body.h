@@ -71,7 +71,7 @@ typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
     void (*weights)(const mpm_body *, const mpm_tile *, const double *block, mpm_weights *);
     void (*scatter)(mpm_body *, size_t tile);
     void (*finish)(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
-    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *); /* not 0: the material gave up; block in body->culprit */
+    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *); /* -1, or the block near which the material gave up */
 } mpm_kernel;
 extern const mpm_kernel mpm_kernel_linear, mpm_kernel_gimp;
 
@@ -113,7 +113,6 @@ struct mpm_body {
     const ab_material_spec *material;
     void *self;                 /* the plugin's instance */
     ab_service service;
-    int culprit;                /* block where the material gave up, or -1 */
     double wave_speed;          /* largest, m/s */
     bool ask_wave_speed;        /* in this step's stress pass */
     double modulus;             /* P-wave modulus, Pa */

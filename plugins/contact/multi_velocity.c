@@ -178,8 +178,7 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         va[c] = na[c] = a->area_vector[c * a->ld + i];
         vb[c] = nb[c] = b->area_vector[c * b->ld + i];
     }
-    unit(na, d);
-    unit(nb, d);
+    const double la = unit(na, d), lb = unit(nb, d);
     n[0] = n[1] = n[2] = 0.0;
     if (mv->normal < 0)
         memcpy(n, mv->direction, sizeof mv->direction);
@@ -197,10 +196,11 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         along_a += va[c] * n[c];
         along_b -= vb[c] * n[c];
     }
-    *area = fmin(along_a, along_b);
     double face = 1.0;
     for (uint32_t c = 1; c < d; ++c) face *= a->cell;
-    return *area > LEAST_AREA * face; /* less: one body only just reaches the node, and has nothing to say there */
+    /* a body thinner than a cell has both its surfaces at the node, and its area vector may point anywhere: then the other's area counts */
+    *area = fmin(along_a, along_b) > LEAST_AREA * face ? fmin(along_a, along_b) : fmax(along_a, along_b);
+    return fmin(la, lb) > LEAST_AREA * face && *area > LEAST_AREA * face; /* less: one body only just reaches the node, and has no say there */
 }
 
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
@@ -249,7 +249,7 @@ static const ab_class CLASS = {
     .nparam = sizeof PARAMS / sizeof *PARAMS,
     .name = "multi-velocity",
     .help = "contact points on the grid nodes that two bodies share, with gap",
-    .reference = "Bardenhagen et al. 2000; Huang et al. 2011; gap between material points as in numerics section 4.1",
+    .reference = "Bardenhagen, Brackbill, Sulsky 2000; Huang et al. 2011; the gap is that between the faces of the nearest material points",
     .param = PARAMS,
     .create = create,
     .destroy = destroy,
