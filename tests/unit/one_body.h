@@ -30,11 +30,11 @@ static inline void say_all(const ab_report *report) {
     for (size_t i = 0; ab_report_text(report, i); i++) print_error("%s\n", ab_report_text(report, i));
 }
 
-#define must(one, call)                                   \
-    do {                                                  \
-        const ab_status status_ = (call);                 \
-        if (status_ != AB_OK) say_all((one)->report);     \
-        assert_int_equal(status_, AB_OK);                 \
+#define must(one, call)                                                                                                                    \
+    do {                                                                                                                                   \
+        const ab_status status_ = (call);                                                                                                  \
+        if (status_ != AB_OK) say_all((one)->report);                                                                                      \
+        assert_int_equal(status_, AB_OK);                                                                                                  \
     } while (0)
 
 static inline one_body *one_body_create(const char *text, int threads) {
@@ -87,7 +87,9 @@ static inline void node_place(const mpm_body *body, size_t k, int n, double x[2]
     x[1] = (body->tiles[k].ty * AB_TILE + n / AB_TILE) * body->h;
 }
 
-static inline double *node_record(const mpm_body *body, size_t k, int n) { return body->own + (k * AB_TILE_NODES + (size_t)n) * OWN_RECORD; }
+static inline double *node_record(const mpm_body *body, size_t k, int n) {
+    return body->own + (k * AB_TILE_NODES + (size_t)n) * OWN_RECORD;
+}
 
 static inline bool is_point(const mpm_body *body, size_t slot) { return body->ids[slot] != UINT64_MAX; }
 

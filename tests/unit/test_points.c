@@ -33,7 +33,8 @@ static void look_at_weights(const char *basis) {
                 double cells = first + shift + random_between(0, AB_TILE);
                 if (kind == 1) cells = first ? 40 : 0;
                 if (kind == 2) cells = first + 1 + floor(random_between(0, AB_TILE - 1));
-                if (kind == 3) cells = first + 1 + floor(random_between(0, AB_TILE - 1)) + pow(10, random_between(-16, -1)) * (round % 2 ? 1 : -1);
+                if (kind == 3)
+                    cells = first + 1 + floor(random_between(0, AB_TILE - 1)) + pow(10, random_between(-16, -1)) * (round % 2 ? 1 : -1);
                 if (kind == 4) cells = first + shift + (round % 2 ? -random_between(0.01, 0.99) : AB_TILE + random_between(0.01, 0.99));
                 block[8 * (ROW_X + c) + l] = cells * body->h;
                 if (nodes == 3) {
@@ -62,7 +63,8 @@ static void look_at_weights(const char *basis) {
             }
         }
     }
-    print_message("%-6s sum N - 1: %.1e, sum N x - x: %.1e of the grid, sum G: %.1e/h, sum G x - 1: %.1e, least N: %.1e\n", basis, worst_sum, worst_place, worst_slope, worst_linear, lowest);
+    print_message("%-6s sum N - 1: %.1e, sum N x - x: %.1e of the grid, sum G: %.1e/h, sum G x - 1: %.1e, least N: %.1e\n", basis,
+                  worst_sum, worst_place, worst_slope, worst_linear, lowest);
     assert_true(worst_sum <= 1e-13 && worst_place <= 1e-13 && worst_slope <= 1e-13 && worst_linear <= 1e-13 && lowest >= -1e-16);
     one_body_destroy(one);
 }
@@ -81,11 +83,14 @@ static void test_gradients_are_slopes(void **state) {
     double *block = mpm_block(body, 0), worst = 0;
     const mpm_tile tile = body->tiles[0];
     for (int round = 0; round < 1000; round++) {
-        const double x[2] = {(tile.tx * AB_TILE + random_between(1, 7)) * body->h, (tile.ty * AB_TILE + random_between(1, 7)) * body->h}, small = 1e-6 * body->h;
+        const double x[2] = {(tile.tx * AB_TILE + random_between(1, 7)) * body->h, (tile.ty * AB_TILE + random_between(1, 7)) * body->h},
+                     small = 1e-6 * body->h;
         mpm_weights at, before, behind;
         for (int c = 0; c < 2; c++) {
             const double half = body->h * random_between(0.1, 0.5);
-            for (int l = 0; l < 8; l++) block[8 * (ROW_X + c) + l] = x[c], block[8 * (body->rows.half + c) + l] = half, block[8 * (body->rows.inverse_half + c) + l] = 1 / half;
+            for (int l = 0; l < 8; l++)
+                block[8 * (ROW_X + c) + l] = x[c], block[8 * (body->rows.half + c) + l] = half,
+                                        block[8 * (body->rows.inverse_half + c) + l] = 1 / half;
         }
         body->kernel->weights(body, &tile, block, &at);
         for (int c = 0; c < 2; c++) block[8 * (ROW_X + c)] = x[c] - small;
@@ -94,7 +99,8 @@ static void test_gradients_are_slopes(void **state) {
         body->kernel->weights(body, &tile, block, &behind);
         if (before.node[0] != at.node[0] || behind.node[0] != at.node[0]) continue;
         for (int c = 0; c < 2; c++)
-            for (int i = 0; i < 3; i++) worst = fmax(worst, fabs((behind.n[c][i][0] - before.n[c][i][0]) / (2 * small) - at.g[c][i][0]) * body->h);
+            for (int i = 0; i < 3; i++)
+                worst = fmax(worst, fabs((behind.n[c][i][0] - before.n[c][i][0]) / (2 * small) - at.g[c][i][0]) * body->h);
     }
     assert_true(worst < 2e-5);
     one_body_destroy(one);
@@ -135,7 +141,9 @@ static void test_no_point_is_lost(void **state) {
     static const char *const basis[] = {"gimp", "linear"}, *const update[] = {"musl", "usf"};
     for (int b = 0; b < 2; b++)
         for (int u = 0; u < 2; u++) {
-            const char *text = scene(basis[b], update[u], "shape: {disc: {center: [4, 6], radius: 2}}, fill: {rule: regular, per_cell: 9}, velocity: ['4-1.5*(y-6)', '-5+1.5*(x-4)']");
+            const char *text = scene(basis[b], update[u],
+                                     "shape: {disc: {center: [4, 6], radius: 2}}, fill: {rule: regular, per_cell: 9}, velocity: "
+                                     "['4-1.5*(y-6)', '-5+1.5*(x-4)']");
             one_body *one = one_body_create(text, 2);
             const size_t born = one->mpm->points;
             const uint64_t version = one->mpm->version;

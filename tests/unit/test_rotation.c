@@ -46,7 +46,8 @@ static void check(const char *basis, const char *update, const char *material, d
         one_body_step(one, turn, NULL);
         if (s % 7 && s % STEPS_PER_TURN) continue; /* look at all angles, and after every turn */
         const double angle = 2 * PI * (s % STEPS_PER_TURN) / STEPS_PER_TURN, c = cos(angle), n = sin(angle);
-        const double expected[4] = {c * c * start[0] + n * n * start[1] - 2 * c * n * start[3], n * n * start[0] + c * c * start[1] + 2 * c * n * start[3], start[2],
+        const double expected[4] = {c * c * start[0] + n * n * start[1] - 2 * c * n * start[3],
+                                    n * n * start[0] + c * c * start[1] + 2 * c * n * start[3], start[2],
                                     c * n * (start[0] - start[1]) + (c * c - n * n) * start[3]};
         size_t seen = 0;
         for (size_t slot = 0; slot < body->block_count * 8; slot++) {
@@ -60,14 +61,15 @@ static void check(const char *basis, const char *update, const char *material, d
             worst_place = fmax(worst_place, hypot(*point_row(body, slot, ROW_X) - x, *point_row(body, slot, ROW_X + 1) - y));
             if (body->rows.gradient >= 0) {
                 const double turned[4] = {c, -n, n, c};
-                for (int k = 0; k < 4; k++) worst_gradient = fmax(worst_gradient, fabs(*point_row(body, slot, body->rows.gradient + k) - turned[k]));
+                for (int k = 0; k < 4; k++)
+                    worst_gradient = fmax(worst_gradient, fabs(*point_row(body, slot, body->rows.gradient + k) - turned[k]));
             }
         }
         assert_int_equal(seen, body->born);
     }
     worst_energy = fabs(body->energy.strain) / total_volume;
-    print_message("%-6s %-4s %-14.14s stress %.1e of E, J %.1e, place %.1e m, F %.1e, strain energy %.1e of E\n", basis, update, material + 7, worst_stress / modulus, worst_volume,
-                  worst_place, worst_gradient, worst_energy / modulus);
+    print_message("%-6s %-4s %-14.14s stress %.1e of E, J %.1e, place %.1e m, F %.1e, strain energy %.1e of E\n", basis, update,
+                  material + 7, worst_stress / modulus, worst_volume, worst_place, worst_gradient, worst_energy / modulus);
     assert_true(worst_stress <= 1e-10 * modulus);
     assert_true(worst_volume <= 1e-10);
     assert_true(worst_place <= 1e-10);

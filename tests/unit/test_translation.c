@@ -5,8 +5,8 @@
 static const double STRESS[4] = {3, -2, 1, 0.7}, VELOCITY[2] = {1, 0.6}, BLOCK[2] = {4.2, 3.1};
 
 typedef struct carried {
-    double low[2];       /* of the block now, m from the grid's corner */
-    double worst_force;  /* of inner nodes, N/m */
+    double low[2];      /* of the block now, m from the grid's corner */
+    double worst_force; /* of inner nodes, N/m */
     size_t inner;
 } carried;
 
@@ -26,7 +26,8 @@ static void carry(one_body *one, void *data) {
                 continue;
             }
             c->inner++;
-            for (int d = 0; d < 2; d++) c->worst_force = fmax(c->worst_force, own[OWN_MASS] * fabs(own[OWN_VELOCITY + d] - own[OWN_OLD + d]) / one->step.dt);
+            for (int d = 0; d < 2; d++)
+                c->worst_force = fmax(c->worst_force, own[OWN_MASS] * fabs(own[OWN_VELOCITY + d] - own[OWN_OLD + d]) / one->step.dt);
         }
 }
 
@@ -36,7 +37,8 @@ static void run(const char *basis, const char *update, double worst[4]) {
     snprintf(text, sizeof text,
              "abut: 1\nspace: plane-strain\ntime: {end: 100, dt: 0.03}\ngrid: {from: [-0.5, -1], to: [60, 40], cell: 0.5}\n"
              "materials: {m: {model: linear-elastic, E: 10, nu: 0.3, density: 1}}\n"
-             "bodies: {b: {method: material-points, material: m, shape: {box: [[1.17, 1.17], [5.37, 4.27]]}, basis: %s, update: %s, velocity: [1, 0.6]}}\n",
+             "bodies: {b: {method: material-points, material: m, shape: {box: [[1.17, 1.17], [5.37, 4.27]]}, basis: %s, update: %s, "
+             "velocity: [1, 0.6]}}\n",
              basis, update);
     one_body *one = one_body_create(text, 1);
     const mpm_body *body = one->mpm;
@@ -54,13 +56,15 @@ static void run(const char *basis, const char *update, double worst[4]) {
     for (size_t slot = 0; slot < body->block_count * 8; slot++) {
         if (!is_point(body, slot)) continue;
         for (int d = 0; d < 2; d++) {
-            worst[0] = fmax(worst[0], fabs(*point_row(body, slot, ROW_X + d) - x0[body->ids[slot]][d] - VELOCITY[d] * one->step.time) / body->h);
+            worst[0] =
+                fmax(worst[0], fabs(*point_row(body, slot, ROW_X + d) - x0[body->ids[slot]][d] - VELOCITY[d] * one->step.time) / body->h);
             worst[1] = fmax(worst[1], fabs(*point_row(body, slot, ROW_V + d) - VELOCITY[d]));
         }
         for (int d = 0; d < 4; d++) worst[2] = fmax(worst[2], fabs(*point_row(body, slot, ROW_STRESS + d) - STRESS[d]) / 10);
     }
     worst[3] = c.worst_force / (10 * body->h);
-    print_message("%-6s %-4s place %.1e h, velocity %.1e, stress %.1e of E, force on inner nodes %.1e of E h\n", basis, update, worst[0], worst[1], worst[2], worst[3]);
+    print_message("%-6s %-4s place %.1e h, velocity %.1e, stress %.1e of E, force on inner nodes %.1e of E h\n", basis, update, worst[0],
+                  worst[1], worst[2], worst[3]);
     free(x0);
     one_body_destroy(one);
 }
