@@ -168,6 +168,21 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     if (d == 2) closest_approach(a, b, i, guess, n);
 }
 
+/* Distance of the two bodies' material at shared node i, m. A normal from one gradient alone may lean where a body ends; the distance along it would then be
+ * that of nothing. So it is measured along the best direction known, and only a direction given by hand is taken at its word. */
+static double node_gap(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
+    if (mv->normal < 0 || mv->normal == NORMAL_AVERAGE) return distance(a, b, i, n);
+    double na[3] = {0}, nb[3] = {0}, along[3] = {0};
+    for (uint32_t c = 0; c < a->dimension; ++c) {
+        na[c] = a->area_vector[c * a->ld + i];
+        nb[c] = b->area_vector[c * b->ld + i];
+    }
+    unit(na, a->dimension);
+    unit(nb, a->dimension);
+    average_normal(mv, a, b, i, na, nb, along);
+    return distance(a, b, i, unit(along, a->dimension) > 0.0 ? along : n);
+}
+
 static const double LEAST_AREA = 1e-3; /* of a cell's face */
 
 /* The normal at shared node i, out of a; false where there is no contact to speak of. *area: tributary, m2. */
@@ -214,7 +229,7 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
     for (size_t i = 0; i < a->count; ++i) {
         double normal[3], area = 0.0, gap = 0.0;
         if (!node_normal(mv, a, b, i, normal, &area)) continue;
-        if (mv->gap == 0) gap = distance(a, b, i, normal);
+        if (mv->gap == 0) gap = node_gap(mv, a, b, i, normal);
         size_t sa = out->a_start[n], sb = out->b_start[n];
         for (size_t s = a->stencil_start[i]; s < a->stencil_start[i + 1]; ++s, ++sa) {
             out->a_dof[sa] = a->stencil_dof[s];
