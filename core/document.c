@@ -17,6 +17,8 @@ typedef struct builder {
     ab_document *document;
     const char *file;
     yaml_parser_t parser;
+    const char *bytes; /* the text that is parsed */
+    size_t length;
     ab_report *report;
     anchor anchors[AB_DOCUMENT_ANCHORS];
     size_t anchor_count;
@@ -94,6 +96,15 @@ static ab_status resolve_alias(builder *b, const char *name, ab_mark mark, ab_no
     return *node == NULL ? no_memory(b->report) : AB_OK;
 }
 
+/* True where the place is in an indentation that has a tab at or before it. */
+static bool tab_indents(const builder *b, ab_mark mark) {
+    const char *c = b->bytes, *end = b->bytes + b->length;
+    for (int line = 1; line < mark.line && c != NULL; line++) c = memchr(c, '\n', (size_t)(end - c)), c = c == NULL ? NULL : c + 1;
+    for (int column = 1; c != NULL && c < end && column <= mark.column && (*c == ' ' || *c == '\t'); column++, c++)
+        if (*c == '\t') return true;
+    return false;
+}
+
 /* The next event, or the syntax error in libyaml's words. */
 static ab_status next_event(builder *b, yaml_event_t *event) {
     if (yaml_parser_parse(&b->parser, event)) return AB_OK;
@@ -101,6 +112,7 @@ static ab_status next_event(builder *b, yaml_event_t *event) {
     if (b->parser.error == YAML_MEMORY_ERROR) return no_memory(b->report);
     if (b->parser.error == YAML_READER_ERROR) return ab_report_error(b->report, (ab_mark){b->file, 0, 0}, "not readable as YAML: %s", problem);
     const ab_mark mark = place(b, b->parser.problem_mark);
+    if (tab_indents(b, mark)) return ab_report_error(b->report, mark, "not YAML: a tab; indent with spaces");
     if (b->parser.context != NULL)
         return ab_report_error(b->report, mark, "not YAML: %s (%s that began in line %d)", problem, b->parser.context, (int)b->parser.context_mark.line + 1);
     return ab_report_error(b->report, mark, "not YAML: %s", problem);
@@ -293,6 +305,7 @@ static ab_status check_text(const char *file, const char *bytes, size_t length, 
 
 ab_status ab_document_parse(const char *name, const char *bytes, size_t length, ab_document **document, ab_report *report) {
     *document = NULL;
+    if (length >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0) bytes += 3, length -= 3; /* a byte order mark says nothing in UTF-8 */
     if (length > AB_DOCUMENT_BYTES)
         return ab_report_error(report, (ab_mark){name, 0, 0}, "the file has %zu bytes; the largest scene allowed is %d MiB", length, AB_DOCUMENT_BYTES >> 20);
     AB_TRY(check_text(name, bytes, length, report));
@@ -305,6 +318,8 @@ ab_status ab_document_parse(const char *name, const char *bytes, size_t length, 
     } else {
         b->document = made;
         b->file = made->path;
+        b->bytes = bytes;
+        b->length = length;
         b->report = report;
         yaml_parser_set_encoding(&b->parser, YAML_UTF8_ENCODING);
         yaml_parser_set_input_string(&b->parser, (const unsigned char *)bytes, length);

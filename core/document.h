@@ -28,7 +28,7 @@ typedef struct ab_entry { /* of a mapping */
 struct ab_node {
     ab_node_kind kind;
     bool plain;           /* a scalar without quotes */
-    bool override_;       /* came by --set */
+    bool override_;       /* came by --set; mark.file then is "--set PATH" */
     ab_mark mark;
     const char *text;     /* scalar, closed by NUL, without NUL inside */
     size_t count;         /* of items or entries */

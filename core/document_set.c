@@ -51,15 +51,15 @@ static ab_status split(ab_arena *arena, const char *path, step *steps, size_t *c
     return AB_OK;
 }
 
-/* Makes a tree as if it had come from the command line. */
-static void stamp(ab_node *node) {
-    node->mark = mark_set;
+/* Makes a tree as if it had come from the command line; `mark` names the --set it came by. */
+static void stamp(ab_node *node, ab_mark mark) {
+    node->mark = mark;
     node->override_ = true;
     for (size_t i = 0; i < node->count; i++) {
-        if (node->kind == AB_NODE_LIST) stamp(node->items[i]);
+        if (node->kind == AB_NODE_LIST) stamp(node->items[i], mark);
         if (node->kind == AB_NODE_MAP) {
-            node->entries[i].mark = mark_set;
-            stamp(node->entries[i].value);
+            node->entries[i].mark = mark;
+            stamp(node->entries[i].value, mark);
         }
     }
 }
@@ -88,7 +88,7 @@ static ab_node *copied(ab_arena *arena, const ab_node *from) {
     return node;
 }
 
-static ab_status value_node(ab_document *document, const char *path, const char *value, ab_node **node, ab_report *report) {
+static ab_status value_node(ab_document *document, const char *path, const char *value, ab_mark mark, ab_node **node, ab_report *report) {
     ab_document *small = NULL;
     const size_t blank = strspn(value, " \t");
     if (value[blank] == '\0') return ab_report_error(report, mark_set, "%s: the value after '=' is missing", path);
@@ -103,18 +103,18 @@ static ab_status value_node(ab_document *document, const char *path, const char 
     if (status == AB_OK) {
         *node = copied(document->arena, small->root);
         if (*node == NULL) status = no_memory(report);
-        else stamp(*node);
+        else stamp(*node, mark);
     }
     ab_document_destroy(small);
     return status;
 }
 
-static ab_status add_entry(ab_document *document, ab_node *map, const char *key, ab_node *value, ab_report *report) {
+static ab_status add_entry(ab_document *document, ab_node *map, const char *key, ab_mark mark, ab_node *value, ab_report *report) {
     if (map->count >= AB_DOCUMENT_KEYS) return ab_report_error(report, mark_set, "more than %d keys in one mapping", AB_DOCUMENT_KEYS);
     ab_entry *entries = ab_arena_array(document->arena, map->count + 1, sizeof *entries);
     if (entries == NULL) return no_memory(report);
     if (map->count > 0) memcpy(entries, map->entries, map->count * sizeof *entries);
-    entries[map->count] = (ab_entry){key, mark_set, value};
+    entries[map->count] = (ab_entry){key, mark, value};
     map->entries = entries;
     map->count++;
     return AB_OK;
@@ -142,11 +142,13 @@ static ab_node **slot(ab_document *document, ab_node *node, const step *s, const
     if (!may_add) {
         const char *names[AB_DOCUMENT_KEYS];
         for (size_t i = 0; i < node->count; i++) names[i] = node->entries[i].key;
-        *status = ab_report_error(report, mark_set, "%s: there is no '%s' in '%.*s'%s", path, s->key, shown, path,
+        char place[80] = "at the top level";
+        if (shown > 0) snprintf(place, sizeof place, "in '%.*s'", shown < 64 ? shown : 64, path);
+        *status = ab_report_error(report, mark_set, "%s: there is no '%s' %s%s", path, s->key, place,
                                   ab_suggest_tail(s->key, names, node->count, tail, sizeof tail));
         return NULL;
     }
-    *status = add_entry(document, node, s->key, fresh, report);
+    *status = add_entry(document, node, s->key, fresh->mark, fresh, report);
     return *status == AB_OK ? &node->entries[node->count - 1].value : NULL;
 }
 
@@ -155,8 +157,12 @@ ab_status ab_document_set(ab_document *document, const char *path, const char *v
     step steps[MOST_STEPS];
     size_t count = 0;
     AB_TRY(split(document->arena, path, steps, &count, report));
+    char name[1100];
+    snprintf(name, sizeof name, "--set %s", path);
+    const ab_mark mark = {ab_arena_text(document->arena, name, strlen(name)), 0, 0};
+    if (mark.file == NULL) return no_memory(report);
     ab_node *fresh = NULL;
-    AB_TRY(value_node(document, path, value, &fresh, report));
+    AB_TRY(value_node(document, path, value, mark, &fresh, report));
     ab_node *node = document->root;
     ab_node **at = NULL;
     for (size_t i = 0; i < count; i++) {
@@ -165,7 +171,7 @@ ab_status ab_document_set(ab_document *document, const char *path, const char *v
         if (!last) {
             next = ab_arena_take(document->arena, sizeof *next);
             if (next == NULL) return no_memory(report);
-            *next = (ab_node){.kind = AB_NODE_MAP, .mark = mark_set, .override_ = true, .weight = 1};
+            *next = (ab_node){.kind = AB_NODE_MAP, .mark = mark, .override_ = true, .weight = 1};
         }
         const bool named_by_user = i == 1 && !steps[0].is_index && (strcmp(steps[0].key, "bodies") == 0 || strcmp(steps[0].key, "materials") == 0);
         const bool may_add = last || (!named_by_user && !steps[i + 1].is_index);

@@ -15,7 +15,7 @@ typedef enum ab_status { /* the exit status of the program, too */
 
 /* A place in a text the user wrote. line 0: no place known; file NULL: none. Line and column count from 1. */
 typedef struct ab_mark {
-    const char *file; /* borrowed; lives as long as the document it came from. "--set" for an override */
+    const char *file; /* borrowed; lives as long as the document it came from. "--set PATH" for an override */
     int line, column;
 } ab_mark;
 

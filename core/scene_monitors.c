@@ -222,21 +222,30 @@ static const char *norm_unit(const char *norm, const char *unit, char *buffer) {
     return buffer;
 }
 
-static void take_window(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_expect_spec *expect) {
+/* False: the run was shortened by --set and does not reach the window. */
+static bool take_window(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_expect_spec *expect) {
     const ab_key *key = ab_section_expect.keys;
     const double end = r->scene->time_end;
     expect->to = end;
     ab_read_number(&r->base, &key[EXPECT_FROM], v[EXPECT_FROM], where, &expect->from);
     ab_read_number(&r->base, &key[EXPECT_TO], v[EXPECT_TO], where, &expect->to);
-    if (end > 0 && v[EXPECT_TO] != NULL && expect->to > end * (1 + 1e-12))
+    const bool late = end > 0 && v[EXPECT_TO] != NULL && expect->to > end * (1 + 1e-12);
+    const bool empty = end > 0 && v[EXPECT_FROM] != NULL && !(expect->from < expect->to);
+    const ab_node *edge = late ? v[EXPECT_TO] : v[EXPECT_FROM];
+    if (r->end_by_set && (late || (empty && expect->from >= end)) && !edge->override_) {
+        ab_report_warning(r->base.report, edge->mark, "%s is left out: its window reaches to %.10g s, but --set ends the run at %.10g s", where, fmax(expect->from, expect->to), end);
+        return false;
+    }
+    if (late)
         ab_report_error(r->base.report, v[EXPECT_TO]->mark, "%s.to: %.10g s is after the end of the run at %.10g s", where, expect->to, end);
-    if (end > 0 && v[EXPECT_FROM] != NULL && !(expect->from < expect->to))
-        ab_report_error(r->base.report, v[EXPECT_FROM]->mark, "%s: the window from %.10g to %.10g s is empty", where, expect->from, expect->to);
+    if (empty) ab_report_error(r->base.report, v[EXPECT_FROM]->mark, "%s: the window from %.10g to %.10g s is empty", where, expect->from, expect->to);
+    return true;
 }
 
-static void take_expect(ab_scene_reader *r, const ab_node *node, const char *where, ab_expect_spec *expect) {
+/* False: it is left out. */
+static bool take_expect(ab_scene_reader *r, const ab_node *node, const char *where, ab_expect_spec *expect) {
     const ab_node *v[EXPECT_KEYS];
-    if (!ab_section_open(&r->base, &ab_section_expect, node, where, v)) return;
+    if (!ab_section_open(&r->base, &ab_section_expect, node, where, v)) return true;
     ab_key key[EXPECT_KEYS];
     memcpy(key, ab_section_expect.keys, sizeof key);
     if (v[EXPECT_NAME] != NULL) ab_read_text(&r->base, &key[EXPECT_NAME], v[EXPECT_NAME], where, &expect->name);
@@ -255,12 +264,13 @@ static void take_expect(ab_scene_reader *r, const ab_node *node, const char *whe
     ab_read_number(&r->base, &key[EXPECT_SCALE], v[EXPECT_SCALE], where, &expect->scale);
     ab_read_number(&r->base, &key[EXPECT_LEVEL], v[EXPECT_LEVEL], where, &expect->level);
     if (v[EXPECT_TOLERANCE] != NULL) ab_read_number(&r->base, &key[EXPECT_TOLERANCE], v[EXPECT_TOLERANCE], where, &expect->tolerance);
-    take_window(r, v, where, expect);
-    if (!normed) return;
+    const bool kept = take_window(r, v, where, expect);
+    if (!normed) return kept;
     if (ab_norm_needs_level(expect->norm) && v[EXPECT_LEVEL] == NULL)
         ab_report_error(r->base.report, node->mark, "key 'level' is missing in %s: norm %s needs the value that is to be exceeded", where, expect->norm);
     if (!ab_norm_needs_level(expect->norm) && v[EXPECT_LEVEL] != NULL)
         ab_report_error(r->base.report, v[EXPECT_LEVEL]->mark, "%s.level has no meaning for norm %s; leave it out", where, expect->norm);
+    return kept;
 }
 
 void ab_scene_take_expects(ab_scene_reader *r, const ab_node *node) {
@@ -272,11 +282,11 @@ void ab_scene_take_expects(ab_scene_reader *r, const ab_node *node) {
     }
     scene->expects = ab_reader_take(&r->base, node->count, sizeof *scene->expects);
     if (scene->expects == NULL) return;
-    scene->expect_count = node->count;
     for (size_t i = 0; i < node->count; i++) {
         char where[AB_WHERE];
-        scene->expects[i] = (ab_expect_spec){.mark = node->items[i]->mark, .monitor = SIZE_MAX};
+        ab_expect_spec *expect = &scene->expects[scene->expect_count];
+        *expect = (ab_expect_spec){.mark = node->items[i]->mark, .monitor = SIZE_MAX};
         snprintf(where, sizeof where, "expect[%zu]", i);
-        take_expect(r, node->items[i], where, &scene->expects[i]);
+        if (take_expect(r, node->items[i], where, expect)) scene->expect_count++;
     }
 }

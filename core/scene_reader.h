@@ -16,6 +16,7 @@ typedef struct ab_scene_reader {
     ab_reader base;
     ab_scene *scene;
     ab_registry *registry;
+    bool end_by_set; /* time.end came by --set */
 } ab_scene_reader;
 
 /* One section each; `node` NULL: not written. Mistakes go to the report; what could not be read keeps its default. */

@@ -67,6 +67,7 @@ void ab_scene_take_time(ab_scene_reader *r, const ab_node *node) {
         else /* what --set says takes the place of the other */
             v[v[TIME_DT]->override_ ? TIME_CFL : TIME_DT] = NULL;
     }
+    r->end_by_set = v[TIME_END] != NULL && v[TIME_END]->override_;
     ab_read_number(&r->base, &key[TIME_END], v[TIME_END], "time", &scene->time_end);
     if (v[TIME_DT] != NULL) {
         scene->time_cfl = 0;

@@ -174,6 +174,13 @@ bool ab_read_flag(ab_reader *reader, const ab_key *key, const ab_node *node, con
 bool ab_read_text(ab_reader *reader, const ab_key *key, const ab_node *node, const char *where, char **value) {
     const char *text = node == NULL ? key->initial : scalar(reader, key, node, where, "a text");
     if (text == NULL) return false;
+    for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
+        if (*c == '\n' || *c == '\r') return complain(reader, key, node->mark, where, "a line break; write the text in one line");
+        if (*c >= 32 && *c != 127 && !(c[0] == 0xC2 && c[1] >= 0x80 && c[1] < 0xA0)) continue; /* U+0080 to U+009F steer terminals, too */
+        char why[80];
+        snprintf(why, sizeof why, "control character 0x%02X; remove it", *c == 0xC2 ? c[1] : *c);
+        return complain(reader, key, node->mark, where, why);
+    }
     char *copy = ab_reader_text(reader, text);
     if (copy == NULL) return false;
     *value = copy;

@@ -77,7 +77,10 @@ static void test_what_is_not_a_scene_file_is_refused_by_name(void **state) {
     assert_true(parses("\xff\xfe" "a\0", 4, "UTF-16"));
     assert_true(text_parses("a: \033[31m\n", "control character 0x1B"));
     assert_true(text_parses("a: \"x\\0y\"\n", "a NUL character inside a text"));
-    assert_true(text_parses("\xef\xbb\xbf" "a: \xc3\xa9\n", NULL));
+    assert_true(text_parses("\xef\xbb\xbf" "a: \xc3\xa9\nb: 1\n", NULL));
+    assert_true(text_parses("\xef\xbb\xbf" "a: 1\na: 2\n", "f.yaml:2:1: error: key 'a' stands twice"));
+    assert_true(text_parses("a:\n\tb: 1\n", "f.yaml:2:1: error: not YAML: a tab; indent with spaces"));
+    assert_true(text_parses("a:\n  b: 1\n \tc: 1\n", "a tab; indent with spaces"));
     assert_true(text_parses("a: &x [1, 2]\nb: *x\n", NULL));
     assert_true(text_parses("a: 1\r\nb: 2\r\n", NULL));
 }
@@ -142,6 +145,7 @@ static void test_set_changes_one_value_or_says_why_not(void **state) {
         {"grid.sides", "{bottom: roller}", NULL},
         {"contact[1].friction", "0", "--set: error: contact[1].friction: 'contact' has 1 entries, [0] to [0]"},
         {"bodies.blok.fill", "1", "there is no 'blok' in 'bodies'; did you mean 'block'?"},
+        {"a[99].b", "1", "--set: error: a[99].b: there is no 'a' at the top level"},
         {"gravity.y", "1", "'gravity' is a list [...], so it has no key 'y'; write [0]"},
         {"constants.mu.x", "1", "'constants.mu' is a single value, so it has no key 'x'"},
         {"constants[0]", "1", "'constants' is a mapping {...}, so it has no [0]"},

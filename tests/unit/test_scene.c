@@ -60,6 +60,10 @@ typedef struct mistake {
 } mistake;
 
 static const mistake mistakes[] = {
+    {"title: two blocks", "title: \"two\\e[2Jblocks\"", ":2:8: error: title: control character 0x1B; remove it"},
+    {"title: two blocks", "title: \"two\\nblocks\"", ":2:8: error: title: a line break; write the text in one line"},
+    {"title: two blocks", "title: \"two\\u0085blocks\"", "title: control character 0x85; remove it"},
+    {"name: slides,", "name: \"a\\rb\",", "expect[0].name: a line break"},
     {"    friction: mu", "    frction: mu", ":27:5: error: unknown key 'frction' in contact[0]; did you mean 'friction'?"},
     {"friction: mu", "friction: um", "27:15: error: contact[0].friction: unknown name 'um'; did you mean 'mu'?"},
     {"friction: mu", "friction: -1", "contact[0].friction is -1 but must be at least 0"},

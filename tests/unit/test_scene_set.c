@@ -58,7 +58,31 @@ static void test_dt_and_cfl_take_each_others_place(void **state) {
     const ab_override both[] = {{"time.cfl", "0.3"}, {"time.dt", "1e-3"}};
     o = read_changed(NULL, NULL, both, 2);
     assert_int_equal(o.status, AB_BAD_INPUT);
-    assert_true(said(&o, "--set: error: time has both dt and cfl"));
+    assert_true(said(&o, "--set time.cfl: error: time has both dt and cfl"));
+    forget(&o);
+}
+
+/* A run that --set makes shorter leaves out what is expected after its end; one that the file makes too short is wrong. */
+static void test_a_shortened_run_leaves_late_expects_out(void **state) {
+    (void)state;
+    static const char one[] = "reference: \"1.5 + 2*t\", tolerance: 0.01}";
+    static const char late[] = "reference: 0, from: 0.75, tolerance: 0.01}\n  - {name: ends, monitor: x, reference: 0, to: 0.9, tolerance: 0.01}\n"
+                               "  - {name: kept, monitor: x, reference: 0, from: 0.001, tolerance: 0.01}";
+    const ab_override shorter[] = {{"time.end", "0.01"}, {"expect[0].from", "0.02"}};
+    outcome o = read_changed(one, late, shorter, 1);
+    assert_int_equal(o.status, AB_OK);
+    assert_true(said(&o, "warning: expect[0] is left out: its window reaches to 0.75 s, but --set ends the run at 0.01 s"));
+    assert_true(said(&o, "warning: expect[1] is left out: its window reaches to 0.9 s"));
+    assert_int_equal(o.scene->expect_count, 1);
+    assert_string_equal(o.scene->expects[0].name, "kept");
+    forget(&o);
+    o = read_changed(one, late, shorter, 2);
+    assert_int_equal(o.status, AB_BAD_INPUT);
+    assert_true(said(&o, "error: expect[0]: the window from 0.02 to 0.01 s is empty"));
+    forget(&o);
+    o = read_changed(one, "reference: 0, from: 2, tolerance: 0.01}", NULL, 0);
+    assert_int_equal(o.status, AB_BAD_INPUT);
+    assert_true(said(&o, "the window from 2 to 1 s is empty"));
     forget(&o);
 }
 
@@ -69,15 +93,15 @@ static void test_wrong_overrides_are_said_with_every_other_mistake(void **state)
     assert_int_equal(o.status, AB_BAD_INPUT);
     assert_true(said(&o, "--set: error: contact[3].friction: 'contact' has 1 entries"));
     assert_true(said(&o, "--set: error: bodies.blok.gravity: there is no 'blok' in 'bodies'; did you mean 'block'?"));
-    assert_true(said(&o, "--set: error: unknown key 'frction' in contact[0]; did you mean 'friction'?"));
-    assert_true(said(&o, "--set: error: bodies.block.gravity: 'perhaps' is not true or false"));
-    assert_true(said(&o, "--set: error: unknown key 'dampin' in the scene; did you mean 'damping'?"));
+    assert_true(said(&o, "--set contact[0].frction: error: unknown key 'frction' in contact[0]; did you mean 'friction'?"));
+    assert_true(said(&o, "--set bodies.block.gravity: error: bodies.block.gravity: 'perhaps' is not true or false"));
+    assert_true(said(&o, "--set dampin.local: error: unknown key 'dampin' in the scene; did you mean 'damping'?"));
     assert_true(said(&o, ":2:1: error: unknown key 'tittle'"));
     assert_int_equal(ab_report_errors(o.report), 6);
     forget(&o);
     o = with("constants.nu", "1");
     assert_int_equal(o.status, AB_OK);
-    assert_true(said(&o, "--set: warning: constants.nu is not in the file"));
+    assert_true(said(&o, "--set constants.nu: warning: constants.nu is not in the file"));
     forget(&o);
 }
 
@@ -132,6 +156,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_an_override_is_as_if_the_file_had_said_so),
         cmocka_unit_test(test_dt_and_cfl_take_each_others_place),
+        cmocka_unit_test(test_a_shortened_run_leaves_late_expects_out),
         cmocka_unit_test(test_wrong_overrides_are_said_with_every_other_mistake),
         cmocka_unit_test(test_damaged_scenes_are_answered),
         cmocka_unit_test(test_values_of_another_kind_are_answered),
