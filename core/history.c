@@ -51,7 +51,8 @@ ab_status ab_history_create(const char *folder, const ab_scene *scene, ab_histor
     history->columns = ab_column_count(scene);
     history->last_step = -1;
     history->file = fopen(history->path, "we");
-    if (history->file == NULL) return failed(history, report);
+    if (history->file == NULL)
+        return ab_report_failure(report, "cannot write '%s': %s; name another folder with -o", history->path, strerror(errno));
     setvbuf(history->file, NULL, _IOFBF, 1 << 18);
     char name[320];
     for (size_t c = 0; c < history->columns; c++) {
