@@ -26,7 +26,7 @@ static const ab_class CLASS = {
     .gives = AB_GIVE_IMPULSE,
     .name = "frictionless",
     .help = "no approach beyond the gap; free slip and separation",
-    .reference = "numerics section 4.4",
+    .reference = "unilateral contact by projected Gauss-Seidel: Moreau 1999; Jean 1999",
     .ops = &OPS,
 };
 static const ab_class *const CLASSES[] = {&CLASS};
