@@ -11,19 +11,26 @@ prefix=$scratch/prefix
 cd "$scratch"
 
 plugins=$(PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name abut.pc)") pkg-config --variable=plugindir abut)
-for file in bin/abut include/abut_plugin.h share/abut/cases/block_on_incline/scene.yaml share/doc/abut/user.md share/doc/abut/README.md; do
+for file in bin/abut include/abut_plugin.h share/doc/abut/cases/block_on_incline/scene.yaml share/doc/abut/docs/user.md share/doc/abut/README.md; do
     [ -f "$prefix/$file" ] || { echo "$file is not installed"; exit 1; }
 done
 [ -f "$plugins/material/linear_elastic.so" ] || { echo "no built-in plugins in '$plugins'"; exit 1; }
+# What the installed pages link to lies beside them.
+broken=$(find "$prefix/share/doc/abut" -name '*.md' | while read -r page; do
+    grep -oE '\]\([^)#:]+\)' "$page" | sed 's/^](//; s/)$//' | while read -r link; do
+        [ -e "$(dirname "$page")/$link" ] || echo "$page: $link"
+    done
+done)
+[ -z "$broken" ] || { echo "links that lead nowhere: $broken"; exit 1; }
 # Away from the build folder, so that only the installed plugins can be found.
 env -u ABUT_PLUGIN_PATH "$prefix/bin/abut" plugins >listed.txt
 grep -q linear-elastic listed.txt
-"$prefix/bin/abut" check "$prefix/share/abut/cases/block_on_incline/scene.yaml"
+"$prefix/bin/abut" check "$prefix/share/doc/abut/cases/block_on_incline/scene.yaml"
 
 # A material of one's own: the linear-elastic one under another name.
 mkdir -p own
 sed 's/"linear-elastic"/"outside-elastic"/' "$source/plugins/material/linear_elastic.c" >own/outside_elastic.c
-sed 's/model: linear-elastic/model: outside-elastic/' "$prefix/share/abut/cases/block_on_incline/scene.yaml" >own/scene.yaml
+sed 's/model: linear-elastic/model: outside-elastic/' "$prefix/share/doc/abut/cases/block_on_incline/scene.yaml" >own/scene.yaml
 
 mkdir -p by_pkgconfig/material by_cmake
 # shellcheck disable=SC2046 # words are wanted
