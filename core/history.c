@@ -25,7 +25,8 @@ static double now(void) {
 }
 
 static ab_status failed(const ab_history *history, ab_report *report) {
-    return ab_report_failure(report, "cannot write '%s': %s; the rows before are kept", history->path, strerror(errno));
+    return ab_report_failure(report, "cannot write '%s': %s; %s", history->path, strerror(errno),
+                             history->last_step < 0 ? "name another folder with -o" : "the rows before are kept");
 }
 
 /* A name as a field of a csv file: quoted where it has to be. */
@@ -51,8 +52,7 @@ ab_status ab_history_create(const char *folder, const ab_scene *scene, ab_histor
     history->columns = ab_column_count(scene);
     history->last_step = -1;
     history->file = fopen(history->path, "we");
-    if (history->file == NULL)
-        return ab_report_failure(report, "cannot write '%s': %s; name another folder with -o", history->path, strerror(errno));
+    if (history->file == NULL) return failed(history, report);
     setvbuf(history->file, NULL, _IOFBF, 1 << 18);
     char name[320];
     for (size_t c = 0; c < history->columns; c++) {

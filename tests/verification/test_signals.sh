@@ -1,0 +1,83 @@
+#!/bin/bash
+# cost: 8
+# A run that is asked to end by a signal says so, leaves what it had and exits 128 + the signal; one that meets a full disk, at once or later, exits 1 and says which
+# file could not be written. test_signals.sh BUILD
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+build=$(realpath "${1:?the build folder}")
+scratch=$(realpath "${ABUT_SCRATCH:-$(mktemp -d)}")
+wrong=0
+cat >"$scratch/scene.yaml" <<'SCENE'
+abut: 1
+title: Two blocks that fall
+space: plane-strain
+gravity: [0, -9.81]
+time: {end: 1000, dt: 1e-4}
+grid: {from: [-8, -100], to: [8, 8], cell: 0.25}
+materials:
+  rubber: {model: linear-elastic, E: 1e5, nu: 0.3, density: 1000}
+bodies:
+  block: {method: material-points, material: rubber, shape: {box: [[-4, -4], [0, 4]]}}
+  other: {method: material-points, material: rubber, shape: {box: [[2, -4], [4, 4]]}}
+history: {every: 1}
+output: {every: 1e-3, fields: [stress, velocity]}
+SCENE
+say() { wrong=1; echo "$1"; [ -f "${2:-}" ] && sed 's/^/    /' "$2"; }
+
+for signal in INT TERM HUP; do
+    out=$scratch/$signal
+    "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" >"$out.log" 2>&1 &
+    run=$!
+    for _ in $(seq 200); do
+        [ "$(grep -c '<Time ' "$out/results.xdmf" 2>/dev/null)" -ge 3 ] 2>/dev/null && break
+        sleep 0.05
+    done
+    kill -$signal $run
+    wait $run
+    status=$?
+    number=$(kill -l $signal)
+    [ $status -eq $((128 + number)) ] || say "SIG$signal: exit $status, wanted $((128 + number))" "$out.log"
+    grep -q "\"outcome\": \"stopped by signal $number\"" "$out/summary.json" || say "SIG$signal: summary.json does not say that the run was stopped"
+    /usr/bin/python3 tests/verification/check_results.py "$out" >"$out.check" 2>&1 || say "SIG$signal: the results cannot be read" "$out.check"
+done
+
+# full NAME KIB CELL: no file may grow beyond that; the size of the cell says how large a frame is.
+full() {
+    local out=$scratch/full_$1 status
+    (
+        ulimit -f "$2"
+        exec "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" --set time.end=0.2 --set grid.cell="$3"
+    ) 2>&1 | cat >"$out.log" # what it says goes to no file, so that only its results meet the limit
+    status=${PIPESTATUS[0]}
+    [ $status -eq 1 ] || say "$2 KiB a file: exit $status, wanted 1" "$out.log"
+    grep -qE "^error: .*cannot write '.*'.*: File too large" "$out.log" || say "$2 KiB a file: the message does not say what could not be written" "$out.log"
+}
+full at_once 0 0.25
+full in_the_first_frame 60 0.25
+full later 60 1
+/usr/bin/python3 tests/verification/check_results.py "$scratch/full_later" --partial >"$scratch/later.check" 2>&1 ||
+    say "the frames before a full disk cannot be read" "$scratch/later.check"
+
+mkdir -p "$scratch/full"
+ln -s /dev/full "$scratch/full/history.csv"
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$scratch/full" --set time.end=0.01 >"$scratch/full.log" 2>&1
+status=$?
+[ $status -eq 1 ] || say "/dev/full: exit $status, wanted 1" "$scratch/full.log"
+grep -qE "history.csv': No space left on device; name another folder" "$scratch/full.log" || say "/dev/full: the message does not name history.csv" "$scratch/full.log"
+
+# A place where nothing can be made is said as that.
+mkdir -p "$scratch/taken/history.csv"
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$scratch/taken" --set time.end=0.01 >"$scratch/taken.log" 2>&1
+status=$?
+[ $status -eq 1 ] || say "history.csv is a folder: exit $status, wanted 1" "$scratch/taken.log"
+grep -q "name another folder with -o" "$scratch/taken.log" || say "history.csv is a folder: no remedy" "$scratch/taken.log"
+
+# What an earlier run with other bodies left is gone; files of other names stay.
+out=$scratch/again
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" --set time.end=0.001 || say "the first of two runs failed"
+touch "$out/notes.txt"
+sed 's/^  other:/  second:/' "$scratch/scene.yaml" >"$scratch/renamed.yaml"
+"$build/abut" run "$scratch/renamed.yaml" --quiet -j 1 -o "$out" --set time.end=0.001 || say "the second of two runs failed"
+found=$(cd "$out" && echo *)
+[ "$found" = "history.csv notes.txt results.h5 results.xdmf results_block.xdmf results_second.xdmf summary.json" ] || say "after two runs there are: $found"
+exit $wrong
