@@ -13,6 +13,8 @@
 #include "core/plan.h"
 #include "core/progress.h"
 
+static const double MOST_STEPS = 1e12; /* of a run; more would take years */
+
 static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
 
 static void on_signal(int number) { stop_signal = number; }
@@ -80,6 +82,11 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
     s->dt = choose_dt(s);
+    if (scene->time_end / s->dt > MOST_STEPS) {
+        const double dt = s->dt;
+        ab_schedule_destroy(s);
+        return ab_report_error(report, scene->mark_time, "time.end: steps of about %.3g s up to %g s would be %.3g, more than %g", dt, scene->time_end, scene->time_end / dt, MOST_STEPS);
+    }
     *out = s;
     return AB_OK;
 }

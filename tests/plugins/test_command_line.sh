@@ -54,6 +54,11 @@ expect 2 "did you mean 'friction'" check "$scene" --set 'contact[0].frction=1'
 expect 2 'error' run "$scene" --set 'contact[7].friction=1'
 expect 2 'error' run "$scene" --set 'contact[0].algorithm=multi-velocty'
 expect 2 'error' run "$scene" --set 'constants.mu=oops('
+expect 2 "there is no 'a' at the top level" check "$scene" --set 'a[99].b=1'
+expect 2 'time.end: steps of about .* more than 1e\+12' run "$scene" --set time.end=1e300 --set expect=[]
+expect 2 'time.end: steps of about' plan "$scene" --set time.end=1e300
+expect 0 'warning: expect\[1\] is left out' check "$scene" --set time.end=0.01
+expect 0 "warning: contact\[0\]: 'friction' is no setting" check "$scene" --set 'contact[0].response=tied'
 expect 0 'scene.yaml: ok: 2 bodies, 2 materials, 1 contact' check "$scene"
 expect 0 'scene.yaml: ok' check "$scene" --set constants.mu=0.3 --set 'bodies.block.fill.per_cell=4'
 expect 0 'block' plan "$scene"
