@@ -213,9 +213,13 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     }
     double face = 1.0;
     for (uint32_t c = 1; c < d; ++c) face *= a->cell;
-    /* a body thinner than a cell has both its surfaces at the node, and its area vector may point anywhere: then the other's area counts */
-    *area = fmin(along_a, along_b) > LEAST_AREA * face ? fmin(along_a, along_b) : fmax(along_a, along_b);
-    return fmin(la, lb) > LEAST_AREA * face && *area > LEAST_AREA * face; /* less: one body only just reaches the node, and has no say there */
+    /* Less: one body only just reaches the node, and has no say there. But of two bodies in one cell, thinner than it, both area vectors may point the same way:
+     * then the larger says that there is a face, though not how much of it is shared. */
+    const double less = fmin(along_a, along_b), more = fmax(along_a, along_b);
+    double alike = 0.0;
+    for (uint32_t c = 0; c < d; ++c) alike += va[c] * vb[c];
+    *area = fmax(less, 0.0);
+    return less > LEAST_AREA * face || (alike > 0.0 && more > LEAST_AREA * face && fmin(la, lb) > LEAST_AREA * face);
 }
 
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
