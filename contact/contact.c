@@ -284,14 +284,17 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
             }
         if (change <= STANDSTILL * largest) break;
     }
-    if (stage == AB_STAGE_DYNAMIC)
-        for (size_t k = 0; k < all->count; ++k) {
-            book(all, k, step);
-            note_history(all->pairs + k);
-            contact_points_remember(&all->pairs[k].points);
-        }
     if (stage == AB_STAGE_DYNAMIC) all->answered_step = step->number;
     return AB_OK;
+}
+
+static void settle(ab_interaction *face, const ab_step *step) {
+    contact_all *all = (contact_all *)face;
+    for (size_t k = 0; k < all->count; ++k) {
+        book(all, k, step);
+        note_history(all->pairs + k);
+        contact_points_remember(&all->pairs[k].points);
+    }
 }
 
 static const ab_contact_totals *totals(const ab_interaction *face) { return ((const contact_all *)face)->totals; }
@@ -340,7 +343,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
 {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
-    all->face = (ab_interaction){destroy, solve, totals, book_body};
+    all->face = (ab_interaction){destroy, solve, settle, totals, book_body};
     all->scene = scene;
     all->found_step = all->answered_step = -1;
     all->pairs = calloc(scene->contact_count + 1, sizeof *all->pairs);

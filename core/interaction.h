@@ -15,6 +15,8 @@ struct ab_interaction { /* first member of the maker's own struct */
     void (*destroy)(ab_interaction *);
     /* Finds contact points (once per step, in the first stage that comes) and changes the dofs' velocities. */
     ab_status (*solve)(ab_interaction *, const ab_step *, ab_stage, ab_report *);
+    /* After the bodies have taken their final velocities of the step (damping comes after contact): books forces and work. */
+    void (*settle)(ab_interaction *, const ab_step *);
     const ab_contact_totals *(*totals)(const ab_interaction *);
     /* Friction and contact dissipation of a body so far, J. */
     void (*book)(const ab_interaction *, size_t body, double *friction, double *contact);

@@ -189,6 +189,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report)
     AB_TRY(status);
     TIMED(PHASE_FINISH, status = EACH(finish));
     AB_TRY(status);
+    if (in) TIMED(PHASE_CONTACT, in->settle(in, &step));
     if (any_remap) {
         TIMED(PHASE_REMAP, status = EACH(remap));
         AB_TRY(status);
