@@ -121,13 +121,17 @@ static inline __attribute__((always_inline)) void fetch(const mpm_body *body, si
 void mpm_grid_fetch_velocity(const mpm_body *body, size_t number, double *pairs) { fetch(body, number, 2, pairs); }
 void mpm_grid_fetch_motion(const mpm_body *body, size_t number, double *quadruples) { fetch(body, number, 4, quadruples); }
 
+static const double LIGHT = 1e-4; /* of a point's mass: a node with less is light */
+
 /* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance, here all that changed the node's velocity
- * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Returns the energy taken, J. */
+ * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Light nodes are
+ * left alone: a finite stress throws them about by any amount, which the points hardly see. Returns the energy taken, J. */
 double mpm_grid_damp(mpm_body *body, double factor)
 {
     double taken = 0.0;
     for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
         double *own = body->own + n * OWN_RECORD;
+        if (own[OWN_MASS] < LIGHT * body->point_mass) continue;
         for (int c = 0; c < 2; ++c) {
             const double old = own[OWN_OLD + c], v = own[OWN_VELOCITY + c];
             const double change = -copysign(fmin(factor * fabs(v - old), fabs(v)), v);
@@ -142,7 +146,6 @@ double mpm_grid_damp(mpm_body *body, double factor)
  * strain may take the velocity it had before. Only USL asks for it: USF and MUSL strain with momentum over mass, an average that is bounded. */
 void mpm_grid_limit_light(mpm_body *body)
 {
-    static const double LIGHT = 1e-4;
     const double limit = LIGHT * body->point_mass;
     for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
         double *own = body->own + n * OWN_RECORD;
