@@ -23,25 +23,25 @@ typedef struct contact_all {
     long answered_step;         /* step whose dynamic stage is done */
 } contact_all;
 
-static void relative_velocity(const contact_pair *pair, const ab_dofs *a, const ab_dofs *b, bool old, size_t i, double v[2])
-{
+static void relative_velocity(const contact_pair *pair, const ab_dofs *a, const ab_dofs *b, bool old, size_t i, double v[2]) {
     const ab_points *p = &pair->points.view;
     v[0] = v[1] = 0.0;
     for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
-        const double *u = old ? a->velocity_old + (size_t)p->a_dof[s] * a->old_stride : a->velocity + (size_t)p->a_dof[s] * a->velocity_stride;
+        const double *u =
+            old ? a->velocity_old + (size_t)p->a_dof[s] * a->old_stride : a->velocity + (size_t)p->a_dof[s] * a->velocity_stride;
         v[0] += p->a_weight[s] * u[0];
         v[1] += p->a_weight[s] * u[1];
     }
     for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
-        const double *u = old ? b->velocity_old + (size_t)p->b_dof[s] * b->old_stride : b->velocity + (size_t)p->b_dof[s] * b->velocity_stride;
+        const double *u =
+            old ? b->velocity_old + (size_t)p->b_dof[s] * b->old_stride : b->velocity + (size_t)p->b_dof[s] * b->velocity_stride;
         v[0] -= p->b_weight[s] * u[0];
         v[1] -= p->b_weight[s] * u[1];
     }
 }
 
 /* Applies what point i wants beyond what its dofs have felt. Returns the size of the change, N s. */
-static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size_t i)
-{
+static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size_t i) {
     ab_points *p = &pair->points.view;
     double j[2];
     for (size_t c = 0; c < 2; ++c) {
@@ -51,24 +51,24 @@ static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size
     if (j[0] == 0.0 && j[1] == 0.0) return 0.0;
     for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
         const size_t k = p->a_dof[s];
-        for (size_t c = 0; c < 2; ++c) a->velocity[k * a->velocity_stride + c] -= p->a_weight[s] * j[c] * a->inverse_mass[k * a->mass_stride + c];
+        for (size_t c = 0; c < 2; ++c)
+            a->velocity[k * a->velocity_stride + c] -= p->a_weight[s] * j[c] * a->inverse_mass[k * a->mass_stride + c];
     }
     for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
         const size_t k = p->b_dof[s];
-        for (size_t c = 0; c < 2; ++c) b->velocity[k * b->velocity_stride + c] += p->b_weight[s] * j[c] * b->inverse_mass[k * b->mass_stride + c];
+        for (size_t c = 0; c < 2; ++c)
+            b->velocity[k * b->velocity_stride + c] += p->b_weight[s] * j[c] * b->inverse_mass[k * b->mass_stride + c];
     }
     return hypot(j[0], j[1]);
 }
 
-static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report)
-{
-    return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name, what, code,
-                             service->message[0] ? "the reason: " : "no reason", service->message);
+static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
+    return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name,
+                             what, code, service->message[0] ? "the reason: " : "no reason", service->message);
 }
 
 /* The response's wishes for points first .. first + count - 1. */
-static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report)
-{
+static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report) {
     const ab_contact_ops *ops = &pair->spec->responder->contact;
     const int code = ops->respond(pair->responder, &pair->points.view, first, count);
     return code == 0 ? AB_OK : complain(pair, &pair->responder_service, "respond", code, report);
@@ -77,8 +77,7 @@ static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab
 /* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
  * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
  * the difference would pump energy into the strain. `history`: rows of HISTORY_*. */
-static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history)
-{
+static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history) {
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
     for (size_t i = first; i < first + count; ++i) {
@@ -86,15 +85,15 @@ static void keep_relative_velocity(contact_pair *pair, size_t first, size_t coun
         if (status == STATUS_FREE) continue;
         const double nx = p->normal[i], ny = p->normal[ld + i], vx = p->relative_velocity[i], vy = p->relative_velocity[ld + i];
         const double jn = p->normal_mass[i] * (vx * nx + vy * ny - history[HISTORY_NORMAL * ld + i]);
-        const double jt = status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
+        const double jt =
+            status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
         p->impulse[i] += jn * nx - jt * ny;
         p->impulse[ld + i] += jn * ny + jt * nx;
     }
 }
 
 /* One round over a pair's points. history: NULL in the dynamic stage. *change, *largest: N s. */
-static ab_status round_over(contact_pair *pair, const double *history, double *change, double *largest, ab_report *report)
-{
+static ab_status round_over(contact_pair *pair, const double *history, double *change, double *largest, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     ab_dofs a, b;
@@ -109,8 +108,10 @@ static ab_status round_over(contact_pair *pair, const double *history, double *c
             relative[i] = v[0];
             relative[p->ld + i] = v[1];
         }
-        if (history) keep_relative_velocity(pair, first, batch, history);
-        else AB_TRY(ask_response(pair, first, batch, report));
+        if (history)
+            keep_relative_velocity(pair, first, batch, history);
+        else
+            AB_TRY(ask_response(pair, first, batch, report));
         for (size_t i = first; i < first + batch; ++i) {
             *change = fmax(*change, apply(pair, &a, &b, i));
             *largest = fmax(*largest, hypot(p->impulse[i], p->impulse[p->ld + i]));
@@ -120,8 +121,7 @@ static ab_status round_over(contact_pair *pair, const double *history, double *c
 }
 
 /* How the dynamic stage has left each point. */
-static void note_history(contact_pair *pair)
-{
+static void note_history(contact_pair *pair) {
     static const double STUCK = 1e-9; /* slip that an impulse this many times its own size would end */
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
@@ -141,11 +141,11 @@ static void note_history(contact_pair *pair)
     }
 }
 
-static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report)
-{
+static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report) {
     contact_points *points = &pair->points;
     AB_TRY(contact_shared_nodes(pair, report));
-    if (!contact_points_reserve(points, pair->node_count, pair->node_count)) return ab_report_failure(report, "no memory for %zu contact points", pair->node_count);
+    if (!contact_points_reserve(points, pair->node_count, pair->node_count))
+        return ab_report_failure(report, "no memory for %zu contact points", pair->node_count);
     ab_points *p = &points->view;
     p->count = 0;
     p->time = step->time;
@@ -171,8 +171,7 @@ static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report
 }
 
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
-static ab_status prepare(contact_pair *pair, ab_report *report)
-{
+static ab_status prepare(contact_pair *pair, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     ab_dofs a, b;
@@ -195,8 +194,7 @@ static ab_status prepare(contact_pair *pair, ab_report *report)
 /* Forces, work and penetration of the step just solved. The work of an impulse is impulse . (old + new relative velocity)/2, exact for what it
  * does to the dofs' kinetic energy. Friction is the part that meets slip which goes on, tangential impulse . new slip: never negative for a law that opposes
  * slip, and zero where the points stick. All the rest is contact loss: what normal impulses take, and what stopping a slip at once takes. */
-static void book(contact_all *all, size_t number, const ab_step *step)
-{
+static void book(contact_all *all, size_t number, const ab_step *step) {
     contact_pair *pair = all->pairs + number;
     contact_points *points = &pair->points;
     const ab_points *p = &points->view;
@@ -221,7 +219,8 @@ static void book(contact_all *all, size_t number, const ab_step *step)
         t->impulse[1] += jy;
         t->normal_force += fabs(jn) / step->dt;
         tangential += jt / step->dt;
-        t->moment += ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
+        t->moment +=
+            ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
         ++t->active;
     }
     t->friction_force = fabs(tangential);
@@ -236,8 +235,7 @@ static void book(contact_all *all, size_t number, const ab_step *step)
 
 /* Contact keeps bodies from getting deeper into each other; it does not push apart what the scene has drawn one inside the other. Seen by points that
  * reach into the other body, and by nodes around which both together take more room than there is. */
-static void warn_of_overlap(const contact_all *all, const contact_pair *pair, ab_report *report)
-{
+static void warn_of_overlap(const contact_all *all, const contact_pair *pair, ab_report *report) {
     static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume */
     const double h = all->scene->grid_cell;
     double deepest = 0.0, most = 0.0;
@@ -246,15 +244,17 @@ static void warn_of_overlap(const contact_all *all, const contact_pair *pair, ab
     ab_node_tiles a, b;
     pair->a->ops->node_tiles(pair->a, &a);
     pair->b->ops->node_tiles(pair->b, &b);
-    const double density_a = all->scene->materials[pair->a->spec->material].density, density_b = all->scene->materials[pair->b->spec->material].density;
-    for (size_t k = 0; k < pair->node_count; ++k) most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
+    const double density_a = all->scene->materials[pair->a->spec->material].density,
+                 density_b = all->scene->materials[pair->b->spec->material].density;
+    for (size_t k = 0; k < pair->node_count; ++k)
+        most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
     if (deepest <= DEEP * h && most <= CROWDED * h * h) return;
-    ab_report_warning(report, pair->spec->mark, "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side", pair->a->spec->name,
-                      pair->b->spec->name);
+    ab_report_warning(report, pair->spec->mark,
+                      "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side",
+                      pair->a->spec->name, pair->b->spec->name);
 }
 
-static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report)
-{
+static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report) {
     contact_all *all = (contact_all *)face;
     if (all->found_step != step->number) {
         for (size_t k = 0; k < all->count; ++k) {
@@ -299,15 +299,13 @@ static void settle(ab_interaction *face, const ab_step *step) {
 
 static const ab_contact_totals *totals(const ab_interaction *face) { return ((const contact_all *)face)->totals; }
 
-static void book_body(const ab_interaction *face, size_t body, double *friction, double *contact)
-{
+static void book_body(const ab_interaction *face, size_t body, double *friction, double *contact) {
     const contact_all *all = (const contact_all *)face;
     *friction = all->friction[body];
     *contact = all->contact[body];
 }
 
-static void destroy(ab_interaction *face)
-{
+static void destroy(ab_interaction *face) {
     contact_all *all = (contact_all *)face;
     for (size_t k = 0; all->pairs && k < all->count; ++k) {
         contact_pair *pair = all->pairs + k;
@@ -320,27 +318,26 @@ static void destroy(ab_interaction *face)
 }
 
 /* host->reserve for finders that make more points than there are shared nodes; context is the ab_service, found again through the view. */
-static int reserve(void *context, ab_points *view, size_t points_more, size_t stencil_more)
-{
+static int reserve(void *context, ab_points *view, size_t points_more, size_t stencil_more) {
     (void)context;
     contact_points *points = (contact_points *)view; /* view is its first member */
     const size_t stencil = points_more + stencil_more + (view->count ? view->a_start[view->count] + view->b_start[view->count] : 0);
     return contact_points_reserve(points, view->count + points_more, stencil) ? 0 : -1;
 }
 
-static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, const ab_value *settings, ab_service *service, void **self, ab_report *report)
-{
+static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, const ab_value *settings, ab_service *service, void **self,
+                             ab_report *report) {
     char who[96];
     snprintf(who, sizeof who, "contact '%s' of '%s' and '%s'", loaded->class_.name, pair->a->spec->name, pair->b->spec->name);
     ab_service_init(service, who);
     service->host.reserve = reserve;
     if (loaded->class_.create && loaded->class_.create(&service->host, settings, self) != 0)
-        return ab_report_error(report, pair->spec->mark, "%s refused its settings: %s", who, service->message[0] ? service->message : "no reason given");
+        return ab_report_error(report, pair->spec->mark, "%s refused its settings: %s", who,
+                               service->message[0] ? service->message : "no reason given");
     return AB_OK;
 }
 
-ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report)
-{
+ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
     all->face = (ab_interaction){destroy, solve, settle, totals, book_body};
@@ -350,7 +347,8 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
     all->totals = calloc(scene->contact_count + 1, sizeof *all->totals);
     all->friction = calloc(scene->body_count + 1, sizeof *all->friction);
     all->contact = calloc(scene->body_count + 1, sizeof *all->contact);
-    ab_status status = all->pairs && all->totals && all->friction && all->contact ? AB_OK : ab_report_failure(report, "no memory for the contacts");
+    ab_status status =
+        all->pairs && all->totals && all->friction && all->contact ? AB_OK : ab_report_failure(report, "no memory for the contacts");
     for (size_t k = 0; status == AB_OK && k < scene->contact_count; ++k) {
         contact_pair *pair = all->pairs + k;
         const ab_contact_spec *spec = scene->contacts + k;
@@ -361,9 +359,11 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.view.struct_size = sizeof(ab_points);
         pair->points.view.dimension = 2;
         pair->points.states = HISTORY;
-        for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s) pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
+        for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)
+            pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
         status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
-        if (status == AB_OK) status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);
+        if (status == AB_OK)
+            status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);
     }
     if (status != AB_OK) {
         destroy(&all->face);

@@ -14,14 +14,14 @@ enum { STATUS_FREE, STATUS_SLIPS, STATUS_STICKS };
 
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
-    ab_points view;             /* what plugins see */
-    double *relative_old;       /* relative velocity at the start of the step */
-    double *applied;            /* impulse that the dofs have felt already; the loop applies the difference */
+    ab_points view;              /* what plugins see */
+    double *relative_old;        /* relative velocity at the start of the step */
+    double *applied;             /* impulse that the dofs have felt already; the loop applies the difference */
     size_t stencil_a, stencil_b; /* capacity of the stencils */
-    size_t states;              /* rows of history: the response's, then the loop's own HISTORY rows */
-    bool shared;                /* some dof serves more than one point: one point after the other, and again until impulses stand still */
-    bool held;                  /* a side holds one direction of some dof: normal and tangential answers act on each other */
-    uint64_t *old_key;          /* of the last step, ascending, with their states: history */
+    size_t states;               /* rows of history: the response's, then the loop's own HISTORY rows */
+    bool shared;                 /* some dof serves more than one point: one point after the other, and again until impulses stand still */
+    bool held;                   /* a side holds one direction of some dof: normal and tangential answers act on each other */
+    uint64_t *old_key;           /* of the last step, ascending, with their states: history */
     double *old_state;
     size_t old_count, old_capacity;
 } contact_points;
@@ -34,7 +34,7 @@ typedef struct contact_pair {
     uint64_t version_a, version_b; /* of the tile lists that `tiles` was made from */
     uint32_t (*tiles)[2];          /* tiles both bodies have: numbers in a's and in b's list */
     size_t tile_count, tile_capacity;
-    uint32_t *nodes_a, *nodes_b;   /* nodes both bodies have mass at */
+    uint32_t *nodes_a, *nodes_b; /* nodes both bodies have mass at */
     size_t node_count, node_capacity;
     contact_points points;
     ab_contact_totals totals;

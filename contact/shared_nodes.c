@@ -3,8 +3,7 @@
 
 #include "contact/contact.h"
 
-static bool grow(void *pointer, size_t *capacity, size_t wanted, size_t size)
-{
+static bool grow(void *pointer, size_t *capacity, size_t wanted, size_t size) {
     if (wanted <= *capacity) return true;
     void **p = pointer, *more = realloc(*p, 2 * wanted * size);
     if (!more) return false;
@@ -13,16 +12,17 @@ static bool grow(void *pointer, size_t *capacity, size_t wanted, size_t size)
     return true;
 }
 
-ab_status contact_shared_nodes(contact_pair *pair, ab_report *report)
-{
+ab_status contact_shared_nodes(contact_pair *pair, ab_report *report) {
     ab_node_tiles a, b;
     pair->a->ops->node_tiles(pair->a, &a);
     pair->b->ops->node_tiles(pair->b, &b);
     if (a.version != pair->version_a || b.version != pair->version_b) {
         pair->tile_count = 0;
         for (size_t i = 0, j = 0; i < a.count && j < b.count;) {
-            if (a.key[i] < b.key[j]) ++i;
-            else if (a.key[i] > b.key[j]) ++j;
+            if (a.key[i] < b.key[j])
+                ++i;
+            else if (a.key[i] > b.key[j])
+                ++j;
             else {
                 if (!grow(&pair->tiles, &pair->tile_capacity, pair->tile_count + 1, sizeof *pair->tiles)) goto no_memory;
                 pair->tiles[pair->tile_count][0] = (uint32_t)i++;

@@ -27,7 +27,8 @@ int ab_command_check(const ab_command_line *line) {
     ab_scene *scene = NULL;
     ab_status status = ab_command_scene(line, &registry, &scene, report);
     if (status == AB_OK) { /* bodies and plugins are made too: only they know what settings together make no sense */
-        const ab_run_options options = {.threads = 1, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
+        const ab_run_options options = {
+            .threads = 1, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
         ab_schedule *schedule = NULL;
         status = ab_schedule_create(scene, &options, &schedule, report);
         ab_schedule_destroy(schedule);

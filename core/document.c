@@ -88,9 +88,11 @@ static ab_status open_anchor(builder *b, const yaml_char_t *name, ab_mark mark, 
 static ab_status resolve_alias(builder *b, const char *name, ab_mark mark, ab_node **node) {
     const anchor *found = anchor_named(b, name);
     if (found == NULL) return ab_report_error(b->report, mark, "alias '*%.64s' has no anchor '&%.64s' before it", name, name);
-    if (found->node == NULL) return ab_report_error(b->report, mark, "alias '*%.64s' stands inside its own anchor, so the value would contain itself", name);
+    if (found->node == NULL)
+        return ab_report_error(b->report, mark, "alias '*%.64s' stands inside its own anchor, so the value would contain itself", name);
     if (found->node->weight > AB_DOCUMENT_NODES - b->document->nodes)
-        return ab_report_error(b->report, mark, "with its aliases written out the file has more than %d values; '*%.64s' is refused", AB_DOCUMENT_NODES, name);
+        return ab_report_error(b->report, mark, "with its aliases written out the file has more than %d values; '*%.64s' is refused",
+                               AB_DOCUMENT_NODES, name);
     b->document->nodes += found->node->weight;
     *node = copied(b->document, found->node);
     return *node == NULL ? no_memory(b->report) : AB_OK;
@@ -110,11 +112,13 @@ static ab_status next_event(builder *b, yaml_event_t *event) {
     if (yaml_parser_parse(&b->parser, event)) return AB_OK;
     const char *problem = b->parser.problem == NULL ? "not YAML" : b->parser.problem;
     if (b->parser.error == YAML_MEMORY_ERROR) return no_memory(b->report);
-    if (b->parser.error == YAML_READER_ERROR) return ab_report_error(b->report, (ab_mark){b->file, 0, 0}, "not readable as YAML: %s", problem);
+    if (b->parser.error == YAML_READER_ERROR)
+        return ab_report_error(b->report, (ab_mark){b->file, 0, 0}, "not readable as YAML: %s", problem);
     const ab_mark mark = place(b, b->parser.problem_mark);
     if (tab_indents(b, mark)) return ab_report_error(b->report, mark, "not YAML: a tab; indent with spaces");
     if (b->parser.context != NULL)
-        return ab_report_error(b->report, mark, "not YAML: %s (%s that began in line %d)", problem, b->parser.context, (int)b->parser.context_mark.line + 1);
+        return ab_report_error(b->report, mark, "not YAML: %s (%s that began in line %d)", problem, b->parser.context,
+                               (int)b->parser.context_mark.line + 1);
     return ab_report_error(b->report, mark, "not YAML: %s", problem);
 }
 
@@ -136,7 +140,8 @@ static ab_status read_scalar(builder *b, const yaml_event_t *event, ab_node *nod
     const size_t length = event->data.scalar.length;
     if (length > AB_DOCUMENT_TEXT)
         return ab_report_error(b->report, node->mark, "a text of %zu characters; the longest allowed is %d", length, AB_DOCUMENT_TEXT);
-    if (memchr(event->data.scalar.value, '\0', length) != NULL) return ab_report_error(b->report, node->mark, "a NUL character inside a text");
+    if (memchr(event->data.scalar.value, '\0', length) != NULL)
+        return ab_report_error(b->report, node->mark, "a NUL character inside a text");
     node->text = ab_arena_text(b->document->arena, (const char *)event->data.scalar.value, length);
     node->plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     return node->text == NULL ? no_memory(b->report) : AB_OK;
@@ -167,11 +172,13 @@ static ab_status read_list(builder *b, ab_node *node, int depth, growing *childr
 }
 
 static ab_status check_key(builder *b, const ab_node *key, const growing *children) {
-    if (key->kind != AB_NODE_SCALAR) return ab_report_error(b->report, key->mark, "a key must be a plain word, not %s", ab_node_kind_name(key));
+    if (key->kind != AB_NODE_SCALAR)
+        return ab_report_error(b->report, key->mark, "a key must be a plain word, not %s", ab_node_kind_name(key));
     if (key->text[0] == '\0') return ab_report_error(b->report, key->mark, "an empty key");
     if (key->plain && strcmp(key->text, "<<") == 0)
         return ab_report_error(b->report, key->mark, "merge keys '<<' are not read; use an alias for a whole value or write the keys out");
-    if (children->count >= AB_DOCUMENT_KEYS) return ab_report_error(b->report, key->mark, "more than %d keys in one mapping", AB_DOCUMENT_KEYS);
+    if (children->count >= AB_DOCUMENT_KEYS)
+        return ab_report_error(b->report, key->mark, "more than %d keys in one mapping", AB_DOCUMENT_KEYS);
     return AB_OK;
 }
 
@@ -257,19 +264,21 @@ static ab_status read_stream(builder *b) {
         ab_status status = AB_OK;
         const ab_mark mark = place(b, event.start_mark);
         switch (event.type) {
-            case YAML_STREAM_END_EVENT: ended = true; break;
-            case YAML_DOCUMENT_START_EVENT:
-                if (in_document) status = ab_report_error(b->report, mark, "a second document begins here; a scene is one document, so leave the '---' out");
-                in_document = true;
-                break;
-            case YAML_STREAM_START_EVENT:
-            case YAML_DOCUMENT_END_EVENT: break;
-            default: status = read_node(b, &event, 1, &b->document->root); break;
+        case YAML_STREAM_END_EVENT: ended = true; break;
+        case YAML_DOCUMENT_START_EVENT:
+            if (in_document)
+                status = ab_report_error(b->report, mark, "a second document begins here; a scene is one document, so leave the '---' out");
+            in_document = true;
+            break;
+        case YAML_STREAM_START_EVENT:
+        case YAML_DOCUMENT_END_EVENT: break;
+        default: status = read_node(b, &event, 1, &b->document->root); break;
         }
         yaml_event_delete(&event);
         AB_TRY(status);
     }
-    if (b->document->root == NULL) return ab_report_error(b->report, (ab_mark){b->file, 0, 0}, "the file is empty; docs/scene.md shows what a scene holds");
+    if (b->document->root == NULL)
+        return ab_report_error(b->report, (ab_mark){b->file, 0, 0}, "the file is empty; docs/scene.md shows what a scene holds");
     return AB_OK;
 }
 
@@ -307,13 +316,14 @@ ab_status ab_document_parse(const char *name, const char *bytes, size_t length, 
     *document = NULL;
     if (length >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0) bytes += 3, length -= 3; /* a byte order mark says nothing in UTF-8 */
     if (length > AB_DOCUMENT_BYTES)
-        return ab_report_error(report, (ab_mark){name, 0, 0}, "the file has %zu bytes; the largest scene allowed is %d MiB", length, AB_DOCUMENT_BYTES >> 20);
+        return ab_report_error(report, (ab_mark){name, 0, 0}, "the file has %zu bytes; the largest scene allowed is %d MiB", length,
+                               AB_DOCUMENT_BYTES >> 20);
     AB_TRY(check_text(name, bytes, length, report));
     ab_document *made = calloc(1, sizeof *made);
     builder *b = calloc(1, sizeof *b);
     ab_status status = AB_OK;
-    if (made == NULL || b == NULL || (made->arena = ab_arena_create()) == NULL || (made->path = ab_arena_text(made->arena, name, strlen(name))) == NULL ||
-        !yaml_parser_initialize(&b->parser)) {
+    if (made == NULL || b == NULL || (made->arena = ab_arena_create()) == NULL ||
+        (made->path = ab_arena_text(made->arena, name, strlen(name))) == NULL || !yaml_parser_initialize(&b->parser)) {
         status = no_memory(report);
     } else {
         b->document = made;
@@ -342,7 +352,8 @@ ab_status ab_document_read(const char *path, ab_document **document, ab_report *
     if (stat(path, &facts) != 0) return ab_report_error(report, mark, "cannot be read: %s", strerror(errno));
     if (S_ISDIR(facts.st_mode)) return ab_report_error(report, mark, "is a folder; name the scene file in it, such as %s/scene.yaml", path);
     if (S_ISREG(facts.st_mode) && facts.st_size > AB_DOCUMENT_BYTES)
-        return ab_report_error(report, mark, "has %lld bytes; the largest scene allowed is %d MiB", (long long)facts.st_size, AB_DOCUMENT_BYTES >> 20);
+        return ab_report_error(report, mark, "has %lld bytes; the largest scene allowed is %d MiB", (long long)facts.st_size,
+                               AB_DOCUMENT_BYTES >> 20);
     FILE *file = fopen(path, "rb");
     if (file == NULL) return ab_report_error(report, mark, "cannot be read: %s", strerror(errno));
     size_t length = 0, capacity = 1 << 14;
@@ -386,7 +397,8 @@ ab_node *ab_node_find(const ab_node *map, const char *key) {
 
 bool ab_node_is_null(const ab_node *node) {
     return node->kind == AB_NODE_SCALAR && node->plain &&
-           (node->text[0] == '\0' || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0 || strcmp(node->text, "Null") == 0 || strcmp(node->text, "NULL") == 0);
+           (node->text[0] == '\0' || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0 || strcmp(node->text, "Null") == 0 ||
+            strcmp(node->text, "NULL") == 0);
 }
 
 const char *ab_node_kind_name(const ab_node *node) {

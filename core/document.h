@@ -11,8 +11,8 @@ enum ab_document_limits {
     AB_DOCUMENT_DEPTH = 64,
     AB_DOCUMENT_NODES = 500000,
     AB_DOCUMENT_ANCHORS = 1000,
-    AB_DOCUMENT_KEYS = 1000,  /* in one mapping */
-    AB_DOCUMENT_TEXT = 16384  /* characters of one scalar */
+    AB_DOCUMENT_KEYS = 1000, /* in one mapping */
+    AB_DOCUMENT_TEXT = 16384 /* characters of one scalar */
 };
 
 typedef enum ab_node_kind { AB_NODE_SCALAR = 1, AB_NODE_LIST, AB_NODE_MAP } ab_node_kind;
@@ -21,20 +21,20 @@ typedef struct ab_node ab_node;
 
 typedef struct ab_entry { /* of a mapping */
     const char *key;
-    ab_mark mark;         /* of the key */
+    ab_mark mark; /* of the key */
     ab_node *value;
 } ab_entry;
 
 struct ab_node {
     ab_node_kind kind;
-    bool plain;           /* a scalar without quotes */
-    bool override_;       /* came by --set; mark.file then is "--set PATH" */
+    bool plain;     /* a scalar without quotes */
+    bool override_; /* came by --set; mark.file then is "--set PATH" */
     ab_mark mark;
-    const char *text;     /* scalar, closed by NUL, without NUL inside */
-    size_t count;         /* of items or entries */
-    ab_node **items;      /* list */
-    ab_entry *entries;    /* mapping, in the order of the file */
-    size_t weight;        /* nodes below, itself counted */
+    const char *text;  /* scalar, closed by NUL, without NUL inside */
+    size_t count;      /* of items or entries */
+    ab_node **items;   /* list */
+    ab_entry *entries; /* mapping, in the order of the file */
+    size_t weight;     /* nodes below, itself counted */
 };
 
 typedef struct ab_document {

@@ -30,12 +30,14 @@ static ab_status split(ab_arena *arena, const char *path, step *steps, size_t *c
             char *end = NULL;
             const unsigned long index = isdigit((unsigned char)c[1]) ? strtoul(c + 1, &end, 10) : 0;
             if (end == NULL || *end != ']' || end - c > 9)
-                return ab_report_error(report, mark_set, "path '%s': after '[' a number and ']' must stand, as in contact[0].friction", path);
+                return ab_report_error(report, mark_set, "path '%s': after '[' a number and ']' must stand, as in contact[0].friction",
+                                       path);
             *s = (step){NULL, index, true, (size_t)(end + 1 - path)};
             c = end + 1;
         } else {
             const size_t length = strcspn(c, ".[");
-            if (length == 0) return ab_report_error(report, mark_set, "path '%s': a key is missing at character %d", path, (int)(c - path) + 1);
+            if (length == 0)
+                return ab_report_error(report, mark_set, "path '%s': a key is missing at character %d", path, (int)(c - path) + 1);
             *s = (step){ab_arena_text(arena, c, length), 0, false, (size_t)(c - path) + length};
             if (s->key == NULL) return no_memory(report);
             c += length;
@@ -97,13 +99,16 @@ static ab_status value_node(ab_document *document, const char *path, const char 
     ab_status status = ab_document_parse("--set", value, strlen(value), &small, own);
     if (ab_report_errors(own) > 0) {
         const char *text = ab_report_text(own, 0), *why = text == NULL ? NULL : strstr(text, "error: ");
-        status = ab_report_error(report, mark_set, "%s: the value '%.200s' cannot be read: %s", path, value, why == NULL ? "not YAML" : why + 7);
+        status =
+            ab_report_error(report, mark_set, "%s: the value '%.200s' cannot be read: %s", path, value, why == NULL ? "not YAML" : why + 7);
     }
     ab_report_destroy(own);
     if (status == AB_OK) {
         *node = copied(document->arena, small->root);
-        if (*node == NULL) status = no_memory(report);
-        else stamp(*node, mark);
+        if (*node == NULL)
+            status = no_memory(report);
+        else
+            stamp(*node, mark);
     }
     ab_document_destroy(small);
     return status;
@@ -121,20 +126,23 @@ static ab_status add_entry(ab_document *document, ab_node *map, const char *key,
 }
 
 /* Where a step leads inside `node`: the slot that holds the value, or NULL with *status set. A key that is missing is added with `fresh`. */
-static ab_node **slot(ab_document *document, ab_node *node, const step *s, const char *path, size_t before, bool may_add, ab_node *fresh, ab_status *status, ab_report *report) {
+static ab_node **slot(ab_document *document, ab_node *node, const step *s, const char *path, size_t before, bool may_add, ab_node *fresh,
+                      ab_status *status, ab_report *report) {
     const int shown = (int)before;
     char tail[1024];
     if (s->is_index) {
         if (node->kind == AB_NODE_LIST && s->index < node->count) return &node->items[s->index];
         if (node->kind == AB_NODE_LIST && node->count > 0)
-            *status = ab_report_error(report, mark_set, "%s: '%.*s' has %zu entries, [0] to [%zu]", path, shown, path, node->count, node->count - 1);
+            *status = ab_report_error(report, mark_set, "%s: '%.*s' has %zu entries, [0] to [%zu]", path, shown, path, node->count,
+                                      node->count - 1);
         else
-            *status = ab_report_error(report, mark_set, "%s: '%.*s' is %s, so it has no [%zu]", path, shown, path, node->kind == AB_NODE_LIST ? "an empty list" : ab_node_kind_name(node), s->index);
+            *status = ab_report_error(report, mark_set, "%s: '%.*s' is %s, so it has no [%zu]", path, shown, path,
+                                      node->kind == AB_NODE_LIST ? "an empty list" : ab_node_kind_name(node), s->index);
         return NULL;
     }
     if (node->kind != AB_NODE_MAP) {
-        *status = ab_report_error(report, mark_set, "%s: '%.*s' is %s, so it has no key '%s'%s", path, shown, path, ab_node_kind_name(node), s->key,
-                                  node->kind == AB_NODE_LIST ? "; write [0], [1] ..." : "; set it as a whole");
+        *status = ab_report_error(report, mark_set, "%s: '%.*s' is %s, so it has no key '%s'%s", path, shown, path, ab_node_kind_name(node),
+                                  s->key, node->kind == AB_NODE_LIST ? "; write [0], [1] ..." : "; set it as a whole");
         return NULL;
     }
     for (size_t i = 0; i < node->count; i++)
@@ -173,7 +181,8 @@ ab_status ab_document_set(ab_document *document, const char *path, const char *v
             if (next == NULL) return no_memory(report);
             *next = (ab_node){.kind = AB_NODE_MAP, .mark = mark, .override_ = true, .weight = 1};
         }
-        const bool named_by_user = i == 1 && !steps[0].is_index && (strcmp(steps[0].key, "bodies") == 0 || strcmp(steps[0].key, "materials") == 0);
+        const bool named_by_user =
+            i == 1 && !steps[0].is_index && (strcmp(steps[0].key, "bodies") == 0 || strcmp(steps[0].key, "materials") == 0);
         const bool may_add = last || (!named_by_user && !steps[i + 1].is_index);
         ab_status status = AB_OK;
         at = slot(document, node, &steps[i], path, i == 0 ? 0 : steps[i - 1].end, may_add, next, &status, report);

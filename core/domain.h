@@ -12,35 +12,41 @@ typedef struct ab_domain ab_domain;
 typedef struct ab_step { /* one time step, the same for every domain */
     double time;         /* at the beginning, s */
     double dt;
-    long number;         /* from 0 */
-    double gravity[3];   /* m/s2, at time + dt/2 */
-    double damping;      /* local non-viscous factor in this step */
+    long number;       /* from 0 */
+    double gravity[3]; /* m/s2, at time + dt/2 */
+    double damping;    /* local non-viscous factor in this step */
 } ab_step;
 
 /* What a body did in one step or since the start; J (per m of thickness in plane strain): the ledger. */
 typedef struct ab_energy {
-    double kinetic;    /* state */
-    double strain;     /* accumulated work of stress less plastic work */
-    double potential;  /* minus the accumulated work of gravity */
-    double plastic;    /* dissipated by the material */
-    double friction;   /* dissipated by slip; booked by the contact loop, half to each body */
-    double contact;    /* lost (or, negative, given back) by normal impulses; half to each body */
-    double boundary;   /* taken away by sides of the grid and boundary plugins */
-    double damping;    /* taken away by local damping */
-    double external;   /* work done on the body by tractions */
-    double outflow;    /* carried out by points that left through an outflow side */
+    double kinetic;   /* state */
+    double strain;    /* accumulated work of stress less plastic work */
+    double potential; /* minus the accumulated work of gravity */
+    double plastic;   /* dissipated by the material */
+    double friction;  /* dissipated by slip; booked by the contact loop, half to each body */
+    double contact;   /* lost (or, negative, given back) by normal impulses; half to each body */
+    double boundary;  /* taken away by sides of the grid and boundary plugins */
+    double damping;   /* taken away by local damping */
+    double external;  /* work done on the body by tractions */
+    double outflow;   /* carried out by points that left through an outflow side */
 } ab_energy;
 
-typedef struct ab_motion { double mass, momentum[3], angular_momentum[3], centre[3]; } ab_motion;
+typedef struct ab_motion {
+    double mass, momentum[3], angular_momentum[3], centre[3];
+} ab_motion;
 
 /* A field a domain can write or monitor. Values come in order of id. */
-typedef struct ab_field { const char *name, *unit; int components; const char *component_names; /* "x y", "xx yy zz xy" */ } ab_field;
+typedef struct ab_field {
+    const char *name, *unit;
+    int components;
+    const char *component_names; /* "x y", "xx yy zz xy" */
+} ab_field;
 
 /* The velocities of a body on dofs, as the contact loop sees them: dof k has velocity[k*velocity_stride + c] and
  * inverse_mass[k*mass_stride + c] (1/kg; 0 where a side or the user holds the direction). */
 typedef struct ab_dofs {
-    double *velocity;            /* current; the loop changes it */
-    const double *velocity_old;  /* at the start of the step: work = impulse . (old + new)/2 */
+    double *velocity;           /* current; the loop changes it */
+    const double *velocity_old; /* at the start of the step: work = impulse . (old + new)/2 */
     const double *inverse_mass;
     size_t velocity_stride, old_stride, mass_stride;
 } ab_dofs;
@@ -48,23 +54,25 @@ typedef struct ab_dofs {
 /* The background grid is one for all bodies, cut into tiles of AB_TILE x AB_TILE nodes. Node (i, j) stands at from + cell*(i, j); tile
  * (I, J) holds nodes i = AB_TILE*I .. AB_TILE*I + AB_TILE-1. A body lists only the tiles where it has mass. */
 enum { AB_TILE = 8, AB_TILE_NODES = AB_TILE * AB_TILE };
-static inline uint64_t ab_tile_key(int32_t tx, int32_t ty) { return ((uint64_t)(uint32_t)(ty + 0x40000000) << 32) | (uint32_t)(tx + 0x40000000); }
+static inline uint64_t ab_tile_key(int32_t tx, int32_t ty) {
+    return ((uint64_t)(uint32_t)(ty + 0x40000000) << 32) | (uint32_t)(tx + 0x40000000);
+}
 static inline int32_t ab_tile_x(uint64_t key) { return (int32_t)((uint32_t)key - 0x40000000u); }
 static inline int32_t ab_tile_y(uint64_t key) { return (int32_t)((uint32_t)(key >> 32) - 0x40000000u); }
 
 typedef struct ab_node_tiles { /* borrowed; valid until the next begin */
     size_t count;
-    const uint64_t *key;    /* ascending */
-    const double *mass;     /* of node n of tile k: mass[(k*AB_TILE_NODES + n)*stride], n = (j%AB_TILE)*AB_TILE + i%AB_TILE */
+    const uint64_t *key; /* ascending */
+    const double *mass;  /* of node n of tile k: mass[(k*AB_TILE_NODES + n)*stride], n = (j%AB_TILE)*AB_TILE + i%AB_TILE */
     size_t stride;
-    uint64_t version;       /* another number when the list is another */
+    uint64_t version; /* another number when the list is another */
 } ab_node_tiles;
 
 typedef struct ab_plan_body { /* what a body will cost; filled by plan() */
     size_t points, cells, tiles;
     size_t bytes, bytes_per_point;
-    char fields[512];  /* names of the arrays allocated, separated by ", " */
-    char passes[512];  /* passes per step, separated by ", " */
+    char fields[512]; /* names of the arrays allocated, separated by ", " */
+    char passes[512]; /* passes per step, separated by ", " */
 } ab_plan_body;
 
 typedef struct ab_domain_ops {
@@ -72,23 +80,25 @@ typedef struct ab_domain_ops {
     void (*destroy)(ab_domain *);
     /* dt, s, at which the scheme of this body is neutrally stable; *limit names what binds ("wave speed 126 m/s of soil in cells of 0.5 m"). */
     double (*critical_dt)(ab_domain *, const char **limit);
-    ab_status (*begin)(ab_domain *, const ab_step *, ab_report *);      /* old velocities on the dofs, mass, internal and external force */
-    ab_status (*early)(ab_domain *, const ab_step *, ab_report *);      /* NULL unless the body strains first (USF): strain, stress, then its internal force */
-    ab_status (*trial)(ab_domain *, const ab_step *, ab_report *);      /* v* with sides, damping; NULL where begin has done it */
-    ab_status (*finish)(ab_domain *, const ab_step *, ab_report *);     /* final dof velocities -> the body's own velocities and places */
-    ab_status (*remap)(ab_domain *, const ab_step *, ab_report *);      /* NULL unless the body maps velocities back (MUSL) */
-    ab_status (*stress)(ab_domain *, const ab_step *, ab_report *);     /* strain from dof velocities (unless done early), stress, volumes */
-    void (*ledger)(const ab_domain *, ab_energy *, ab_motion *);        /* totals so far; friction and contact left at 0 */
+    ab_status (*begin)(ab_domain *, const ab_step *, ab_report *); /* old velocities on the dofs, mass, internal and external force */
+    ab_status (*early)(ab_domain *, const ab_step *,
+                       ab_report *); /* NULL unless the body strains first (USF): strain, stress, then its internal force */
+    ab_status (*trial)(ab_domain *, const ab_step *, ab_report *);  /* v* with sides, damping; NULL where begin has done it */
+    ab_status (*finish)(ab_domain *, const ab_step *, ab_report *); /* final dof velocities -> the body's own velocities and places */
+    ab_status (*remap)(ab_domain *, const ab_step *, ab_report *);  /* NULL unless the body maps velocities back (MUSL) */
+    ab_status (*stress)(ab_domain *, const ab_step *, ab_report *); /* strain from dof velocities (unless done early), stress, volumes */
+    void (*ledger)(const ab_domain *, ab_energy *, ab_motion *);    /* totals so far; friction and contact left at 0 */
     /* contact */
-    void (*node_tiles)(const ab_domain *, ab_node_tiles *);             /* the body's mass on the grid at the start of the step */
+    void (*node_tiles)(const ab_domain *, ab_node_tiles *); /* the body's mass on the grid at the start of the step */
     /* What a finder sees of the body at `count` nodes (number = tile*AB_TILE_NODES + n, ascending, from node_tiles); needs: AB_NEED_* bits. Arrays stay the
      * domain's and are valid until the next call. */
     ab_status (*trace)(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
     void (*dofs)(const ab_domain *, ab_dofs *);
     /* results */
-    size_t (*count)(const ab_domain *);                                 /* points (or nodes) that can be written now */
+    size_t (*count)(const ab_domain *); /* points (or nodes) that can be written now */
     const ab_field *(*fields)(const ab_domain *, size_t *count);
-    ab_status (*read)(const ab_domain *, const char *field, double *values, ab_report *); /* values[i*components + c], i in order of id; "id" gives ids */
+    ab_status (*read)(const ab_domain *, const char *field, double *values,
+                      ab_report *); /* values[i*components + c], i in order of id; "id" gives ids */
     void (*plan)(const ab_domain *, ab_plan_body *);
 } ab_domain_ops;
 
@@ -96,7 +106,7 @@ struct ab_domain { /* first member of each method's own struct */
     const ab_domain_ops *ops;
     const ab_body_spec *spec;
     int dimension;
-    size_t index;      /* of the body in the scene */
+    size_t index; /* of the body in the scene */
 };
 
 #endif

@@ -31,8 +31,9 @@ struct ab_formulas {
     long work; /* spent so far, in characters */
 };
 
-static const char *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "atan2",
-                                        "log2", "log10", "log", "ln", "exp", "sqrt", "sign", "rint", "abs", "sum", "avg", "min", "max"};
+static const char *const functions[] = {"sin",   "cos",   "tan",   "asin",  "acos", "atan",  "sinh", "cosh", "tanh",
+                                        "asinh", "acosh", "atanh", "atan2", "log2", "log10", "log",  "ln",   "exp",
+                                        "sqrt",  "sign",  "rint",  "abs",   "sum",  "avg",   "min",  "max"};
 static const char *const variables_all[] = {"t", "x", "y", "z"};
 static const char *const words[] = {"true", "false", "yes", "no", "on", "off", "null", "inf", "nan", "infinity", "_pi", "_e"};
 
@@ -54,7 +55,8 @@ static bool open_parser(const ab_formulas *formulas, ab_expression *expression) 
     if (expression->parser == NULL) return false;
     mupSetErrorHandler(expression->parser, stay_calm);
     for (size_t i = 0; i < COUNT(variables_all); i++) mupDefineVar(expression->parser, variables_all[i], &expression->variable[i]);
-    for (size_t i = 0; i < formulas->constant_count; i++) mupDefineConst(expression->parser, formulas->constants[i].name, formulas->constants[i].value);
+    for (size_t i = 0; i < formulas->constant_count; i++)
+        mupDefineConst(expression->parser, formulas->constants[i].name, formulas->constants[i].value);
     return !mupError(expression->parser);
 }
 
@@ -87,7 +89,8 @@ bool ab_formulas_name_ok(const ab_formulas *formulas, const char *name, char *wh
     why[0] = '\0';
     if (strlen(name) > AB_FORMULA_NAME) {
         snprintf(why, why_size, "the name has more than %d characters", AB_FORMULA_NAME);
-    } else if (!(isalpha((unsigned char)name[0]) || name[0] == '_') || name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_")] != '\0') {
+    } else if (!(isalpha((unsigned char)name[0]) || name[0] == '_') ||
+               name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_")] != '\0') {
         snprintf(why, why_size, "a constant's name has letters, digits and '_' only and does not begin with a digit");
     } else if (among(name, variables_all, COUNT(variables_all))) {
         snprintf(why, why_size, "'%s' is a variable of formulas; choose another name", name);
@@ -136,12 +139,15 @@ static ab_status explain(ab_formulas *formulas, unsigned variables, char *why, s
     const char *found = mupGetErrorToken(parser);
     if (found != NULL) snprintf(token, sizeof token, "%.*s", AB_FORMULA_NAME, found);
     const size_t letters = strspn(token, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
-    if (letters > 0 && token[letters] == '\0' && !isdigit((unsigned char)token[0]) && !among(token, functions, COUNT(functions)) && strstr(text, "nexpected token") != NULL) {
+    if (letters > 0 && token[letters] == '\0' && !isdigit((unsigned char)token[0]) && !among(token, functions, COUNT(functions)) &&
+        strstr(text, "nexpected token") != NULL) {
         const char *names[AB_FORMULA_CONSTANTS + COUNT(functions) + 4];
         const size_t count = known_names(formulas, variables, names);
         const char *nearest = ab_suggest(token, names, count);
-        if (nearest != NULL && strcmp(nearest, token) != 0) snprintf(tail, sizeof tail, "; did you mean '%s'?", nearest);
-        else snprintf(tail, sizeof tail, "; %s", here(variables));
+        if (nearest != NULL && strcmp(nearest, token) != 0)
+            snprintf(tail, sizeof tail, "; did you mean '%s'?", nearest);
+        else
+            snprintf(tail, sizeof tail, "; %s", here(variables));
         snprintf(why, size, "unknown name '%s'%s", token, tail);
     } else {
         snprintf(why, size, "not a formula: %s", text);
@@ -153,8 +159,10 @@ static ab_status explain(ab_formulas *formulas, unsigned variables, char *why, s
 static bool has_assignment(const char *text) {
     for (const char *c = text; *c != '\0'; c++) {
         if (*c != '=') continue;
-        if (c[1] == '=') c++;
-        else if (c == text || strchr("<>!", c[-1]) == NULL) return true;
+        if (c[1] == '=')
+            c++;
+        else if (c == text || strchr("<>!", c[-1]) == NULL)
+            return true;
     }
     return false;
 }

@@ -21,7 +21,13 @@ static inline bool ab_number_is_constant(const ab_number *number) { return numbe
 /* Variables that a formula may use. */
 enum ab_variables { AB_NO_VARIABLE = 0, AB_VARIABLE_T = 1, AB_VARIABLE_X = 2, AB_VARIABLE_Y = 4, AB_VARIABLES_XY = 6 };
 
-enum ab_formula_limits { AB_FORMULA_TEXT = 2000, AB_FORMULA_NAME = 64, AB_FORMULA_CONSTANTS = 256, AB_FORMULA_COUNT = 1000, AB_FORMULA_WORK = 2000000 };
+enum ab_formula_limits {
+    AB_FORMULA_TEXT = 2000,
+    AB_FORMULA_NAME = 64,
+    AB_FORMULA_CONSTANTS = 256,
+    AB_FORMULA_COUNT = 1000,
+    AB_FORMULA_WORK = 2000000
+};
 
 /* The constants of a scene and every formula compiled with them. pi and e are there from the start. */
 typedef struct ab_formulas ab_formulas;

@@ -10,8 +10,7 @@
 
 enum { HUGE_PAGE = 2 << 20, HUGE_FROM = 4 << 20 };
 
-void *ab_memory_take(size_t bytes)
-{
+void *ab_memory_take(size_t bytes) {
     if (bytes > SIZE_MAX / 2) return NULL;
     if (bytes < HUGE_FROM) {
         const size_t rounded = (bytes + 64) / 64 * 64;
@@ -30,8 +29,7 @@ void *ab_memory_take(size_t bytes)
     return aligned;
 }
 
-void ab_memory_give(void *pointer, size_t bytes)
-{
+void ab_memory_give(void *pointer, size_t bytes) {
     if (!pointer) return;
     if (bytes < HUGE_FROM) {
         free(pointer);
@@ -40,8 +38,7 @@ void ab_memory_give(void *pointer, size_t bytes)
     munmap(pointer, (bytes + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE);
 }
 
-int ab_memory_grow(void **pointer, size_t *capacity, size_t wanted, size_t size)
-{
+int ab_memory_grow(void **pointer, size_t *capacity, size_t wanted, size_t size) {
     if (wanted <= *capacity) return 1;
     size_t enough = *capacity ? *capacity : 64;
     while (enough < wanted) {
@@ -58,8 +55,7 @@ int ab_memory_grow(void **pointer, size_t *capacity, size_t wanted, size_t size)
     return 1;
 }
 
-size_t ab_memory_peak(void)
-{
+size_t ab_memory_peak(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
 }

@@ -92,7 +92,8 @@ static ab_status with_unit(ab_units *units, const char *unit, const char *wanted
 }
 
 /* "FORMULA UNIT": the first blank where both halves can be read. AB_MISSED: no such place. */
-static ab_status split_formula(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables, ab_number *number, char *why, size_t size) {
+static ab_status split_formula(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables,
+                               ab_number *number, char *why, size_t size) {
     char left[AB_FORMULA_TEXT + 1], reason[512];
     if (strlen(text) > AB_FORMULA_TEXT || ab_formulas_exhausted(formulas)) return AB_MISSED;
     int tried = 0, looked = 0;
@@ -113,7 +114,8 @@ static ab_status split_formula(ab_formulas *formulas, ab_units *units, const cha
     return AB_MISSED;
 }
 
-ab_status ab_quantity_read(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables, ab_number *number, char *why, size_t why_size) {
+ab_status ab_quantity_read(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables,
+                           ab_number *number, char *why, size_t why_size) {
     char trimmed[AB_FORMULA_TEXT + 1];
     text += strspn(text, " \t\n");
     size_t length = strlen(text);
@@ -141,7 +143,8 @@ ab_status ab_quantity_read(ab_formulas *formulas, ab_units *units, const char *t
     const ab_status status = ab_formulas_compile(formulas, trimmed, variables, number, why, why_size);
     if (status != AB_BAD_INPUT) return status;
     if (digits > 0 && may_begin_unit(trimmed + digits) && ab_units_known(units, trimmed + digits)) {
-        snprintf(why, why_size, "'%.64s': leave a blank between the number and its unit, as in \"%.*s %.32s\"", trimmed, (int)(digits < 32 ? digits : 32), trimmed, trimmed + digits);
+        snprintf(why, why_size, "'%.64s': leave a blank between the number and its unit, as in \"%.*s %.32s\"", trimmed,
+                 (int)(digits < 32 ? digits : 32), trimmed, trimmed + digits);
         return AB_BAD_INPUT;
     }
     ab_number split = {0, NULL, AB_NOWHERE};

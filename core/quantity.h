@@ -7,7 +7,8 @@
 
 /* unit: SI unit wanted, as UDUNITS reads it; "1" for a pure number; NULL for any dimension. variables: enum ab_variables.
  * On AB_BAD_INPUT `why` has cause and remedy without the place. number->mark is left alone. */
-ab_status ab_quantity_read(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables, ab_number *number, char *why, size_t why_size);
+ab_status ab_quantity_read(ab_formulas *formulas, ab_units *units, const char *text, const char *unit, unsigned variables,
+                           ab_number *number, char *why, size_t why_size);
 
 typedef enum ab_literal { AB_LITERAL_NONE, AB_LITERAL_NUMBER, AB_LITERAL_REFUSED } ab_literal;
 /* Reads a plain decimal number, all of the text. Refused: forms that look like a number but are read differently by different programs

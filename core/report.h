@@ -7,10 +7,10 @@
 #include <stdio.h>
 
 typedef enum ab_status { /* the exit status of the program, too */
-    AB_OK = 0,
-    AB_FAILED = 1,      /* the run failed: blow-up, a lost point, a full disk, no memory */
-    AB_BAD_INPUT = 2,   /* the input is wrong */
-    AB_MISSED = 3       /* an expect missed with --strict */
+                         AB_OK = 0,
+                         AB_FAILED = 1,    /* the run failed: blow-up, a lost point, a full disk, no memory */
+                         AB_BAD_INPUT = 2, /* the input is wrong */
+                         AB_MISSED = 3     /* an expect missed with --strict */
 } ab_status;
 
 /* A place in a text the user wrote. line 0: no place known; file NULL: none. Line and column count from 1. */
@@ -30,7 +30,7 @@ ab_status ab_report_error(ab_report *report, ab_mark mark, const char *format, .
 ab_status ab_report_failure(ab_report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ab_report_warning(ab_report *report, ab_mark mark, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-size_t ab_report_errors(const ab_report *report);   /* errors and failures so far */
+size_t ab_report_errors(const ab_report *report); /* errors and failures so far */
 size_t ab_report_warnings(const ab_report *report);
 const char *ab_report_text(const ab_report *report, size_t item); /* item-th line, in order of place; NULL past the end */
 
@@ -40,10 +40,10 @@ void ab_report_print(ab_report *report, FILE *stream);
 #define AB_NOWHERE ((ab_mark){NULL, 0, 0})
 
 /* Returns up when a call failed. */
-#define AB_TRY(call)                                \
-    do {                                            \
-        const ab_status ab_try_status_ = (call);    \
-        if (ab_try_status_ != AB_OK) return ab_try_status_; \
+#define AB_TRY(call)                                                                                                                       \
+    do {                                                                                                                                   \
+        const ab_status ab_try_status_ = (call);                                                                                           \
+        if (ab_try_status_ != AB_OK) return ab_try_status_;                                                                                \
     } while (0)
 
 #endif

@@ -158,8 +158,11 @@ static const double ALARM = 0.1, ROUNDING = 1e-6; /* of the kinetic energy: a bo
 static void alarm_of_remainder(const ab_results *results, const ab_state_view *view, ab_report *report) {
     const double moved = ab_results_moved(results, view);
     if (!(fabs(view->remainder) > ALARM * moved) || !(fabs(view->remainder) > ROUNDING * view->total.kinetic)) return;
-    ab_report_warning(report, view->scene->mark_time, "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; a finer grid, basis gimp, "
-                      "update musl or a smaller dt may help", view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved);
+    ab_report_warning(
+        report, view->scene->mark_time,
+        "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; a finer grid, basis gimp, "
+        "update musl or a smaller dt may help",
+        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved);
 }
 
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */

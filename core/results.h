@@ -4,14 +4,14 @@
 
 #include "core/domain.h"
 
-typedef struct ab_contact_totals { /* of one contact of the scene */
-    double impulse[3];      /* N s on the second body in the last step */
-    double force[3];        /* impulse / dt */
-    double moment;          /* N m about the origin, on the second body */
-    double normal_force;    /* N, sum of |normal| parts */
-    double friction_force;  /* N, |sum of tangential parts| */
-    size_t points, active;  /* contact points in the last step; those with an impulse */
-    double penetration;     /* m, deepest in the last step, >= 0 */
+typedef struct ab_contact_totals {      /* of one contact of the scene */
+    double impulse[3];                  /* N s on the second body in the last step */
+    double force[3];                    /* impulse / dt */
+    double moment;                      /* N m about the origin, on the second body */
+    double normal_force;                /* N, sum of |normal| parts */
+    double friction_force;              /* N, |sum of tangential parts| */
+    size_t points, active;              /* contact points in the last step; those with an impulse */
+    double penetration;                 /* m, deepest in the last step, >= 0 */
     double friction_work, contact_work; /* J so far */
 } ab_contact_totals;
 
@@ -19,14 +19,14 @@ typedef struct ab_state_view { /* what monitors and writers look at; borrowed fr
     const ab_scene *scene;
     double time, dt;
     long step;
-    const char *limit;                   /* what binds dt */
-    ab_domain **domains;                 /* body_count */
-    const ab_contact_totals *contacts;   /* contact_count */
-    const ab_energy *energy;             /* per body, friction and contact booked */
+    const char *limit;                 /* what binds dt */
+    ab_domain **domains;               /* body_count */
+    const ab_contact_totals *contacts; /* contact_count */
+    const ab_energy *energy;           /* per body, friction and contact booked */
     const ab_motion *motion;
-    const ab_energy *energy_start;       /* per body at t = 0 */
+    const ab_energy *energy_start; /* per body at t = 0 */
     ab_energy total;
-    double remainder;                    /* J: what the discretisation made (+) or lost (-) */
+    double remainder; /* J: what the discretisation made (+) or lost (-) */
 } ab_state_view;
 
 typedef struct ab_results ab_results;

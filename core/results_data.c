@@ -12,7 +12,7 @@ static herr_t innermost(unsigned depth, const H5E_error2_t *error, void *text) {
 }
 
 ab_status ab_hdf5_trouble(const char *what, ab_report *report) {
-    char text[256] = "no memory"; /* the one trouble that HDF5 cannot always note */
+    char text[256] = "no memory";                              /* the one trouble that HDF5 cannot always note */
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, innermost, text); /* ends at the cause */
     return ab_report_failure(report, "results.h5: cannot %s: %s", what, text);
 }

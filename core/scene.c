@@ -69,7 +69,8 @@ static ab_status prepare(ab_scene **made, ab_document *document, ab_scene_reader
     return AB_OK;
 }
 
-ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t override_count, ab_registry *registry, ab_scene **scene, ab_report *report) {
+ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t override_count, ab_registry *registry, ab_scene **scene,
+                        ab_report *report) {
     *scene = NULL;
     const size_t errors = ab_report_errors(report);
     ab_document *document = NULL;
@@ -79,7 +80,8 @@ ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t o
     AB_TRY(prepare(&made, document, &r, report));
     r.registry = registry;
     ab_status status = AB_OK;
-    for (size_t i = 0; i < override_count && status != AB_FAILED; i++) status = ab_document_set(document, overrides[i].path, overrides[i].value, report);
+    for (size_t i = 0; i < override_count && status != AB_FAILED; i++)
+        status = ab_document_set(document, overrides[i].path, overrides[i].value, report);
     if (status != AB_FAILED) {
         take_top(&r, document->root);
         status = ab_report_errors(report) > errors ? AB_BAD_INPUT : AB_OK;
@@ -111,7 +113,8 @@ int ab_scene_body_named(ab_scene_reader *reader, const char *name, ab_mark mark,
     const char *names[AB_DOCUMENT_KEYS];
     for (size_t i = 0; i < scene->body_count; i++) names[i] = scene->bodies[i].name;
     char tail[AB_TAIL];
-    ab_report_error(reader->base.report, mark, "%s: there is no body '%.64s'%s", where, name, ab_suggest_tail(name, names, scene->body_count, tail, sizeof tail));
+    ab_report_error(reader->base.report, mark, "%s: there is no body '%.64s'%s", where, name,
+                    ab_suggest_tail(name, names, scene->body_count, tail, sizeof tail));
     return -1;
 }
 

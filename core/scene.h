@@ -22,11 +22,11 @@ typedef enum ab_shape_kind { AB_SHAPE_BOX = 1, AB_SHAPE_DISC, AB_SHAPE_RING, AB_
 typedef struct ab_shape_spec {
     ab_shape_kind kind;
     ab_mark mark;
-    double low[2], high[2];               /* box */
-    double center[2], radius, inner;      /* disc, ring (inner radius) */
-    double (*vertices)[2];                /* polygon: either way round; stored counter-clockwise */
-    size_t count;                         /* vertices, or members */
-    struct ab_shape_spec *members;        /* union */
+    double low[2], high[2];          /* box */
+    double center[2], radius, inner; /* disc, ring (inner radius) */
+    double (*vertices)[2];           /* polygon: either way round; stored counter-clockwise */
+    size_t count;                    /* vertices, or members */
+    struct ab_shape_spec *members;   /* union */
 } ab_shape_spec;
 
 typedef enum ab_fill_rule { AB_FILL_REGULAR = 0, AB_FILL_GAUSS } ab_fill_rule;
@@ -34,25 +34,25 @@ typedef enum ab_fill_rule { AB_FILL_REGULAR = 0, AB_FILL_GAUSS } ab_fill_rule;
 /* where: a set of places on or in a body's initial outline */
 typedef struct ab_where {
     bool all;
-    int side;               /* AB_LEFT.. or -1 */
-    bool has[2];            /* x, y */
-    double range[2][2];     /* a single value v is [v, v] */
+    int side;           /* AB_LEFT.. or -1 */
+    bool has[2];        /* x, y */
+    double range[2][2]; /* a single value v is [v, v] */
     ab_mark mark;
 } ab_where;
 
 typedef struct ab_body_spec {
     char *name;
     ab_mark mark;
-    char *method;               /* "material-points"; main maps it to a domain maker */
-    size_t material;            /* index into materials */
+    char *method;    /* "material-points"; main maps it to a domain maker */
+    size_t material; /* index into materials */
     ab_shape_spec shape;
     ab_fill_rule fill;
     int per_cell;
-    char *basis;                /* "linear" | "gimp" */
-    bool contiguous;            /* domains of gimp follow the stretch */
-    double flip;                /* transfer: 1 flip, 0 pic */
-    char *update;               /* "usf" | "usl" | "musl" */
-    ab_number velocity[2];      /* formulas of x, y */
+    char *basis;           /* "linear" | "gimp" */
+    bool contiguous;       /* domains of gimp follow the stretch */
+    double flip;           /* transfer: 1 flip, 0 pic */
+    char *update;          /* "usf" | "usl" | "musl" */
+    ab_number velocity[2]; /* formulas of x, y */
     bool gravity;
     ab_mark mark_fill;
 } ab_body_spec;
@@ -68,59 +68,72 @@ typedef struct ab_load_spec {
     ab_mark mark;
     size_t body;
     ab_where where;
-    ab_number traction[2];      /* Pa, formulas of t */
+    ab_number traction[2]; /* Pa, formulas of t */
 } ab_load_spec;
 
 typedef struct ab_monitor_spec {
     char *name;
     ab_mark mark;
-    int body, contact;          /* index or -1. Both -1: of the whole scene */
-    bool has_at; double at[2];  /* value at the point nearest to this place of the initial body */
-    char *value;                /* "position.x", "velocity.y", "displacement.x", "stress.xx", "force.y", "energy.kinetic", "momentum.x", "angular-momentum", ... */
-    char *over;                 /* "mass" | "volume" | "max" | "min" | "sum" or NULL */
-    ab_where where; bool has_where;
+    int body, contact; /* index or -1. Both -1: of the whole scene */
+    bool has_at;
+    double at[2]; /* value at the point nearest to this place of the initial body */
+    char *
+        value; /* "position.x", "velocity.y", "displacement.x", "stress.xx", "force.y", "energy.kinetic", "momentum.x", "angular-momentum", ... */
+    char *over; /* "mass" | "volume" | "max" | "min" | "sum" or NULL */
+    ab_where where;
+    bool has_where;
 } ab_monitor_spec;
 
 typedef struct ab_expect_spec {
     char *name;
     ab_mark mark;
-    size_t monitor;             /* index into monitors; or SIZE_MAX with `column` naming a history column (kinetic, remainder, block.kinetic ...) */
+    size_t monitor; /* index into monitors; or SIZE_MAX with `column` naming a history column (kinetic, remainder, block.kinetic ...) */
     char *column;
-    ab_number reference;        /* formula of t */
-    char *norm;                 /* "final" | "max" | "l2" | "mean" | "peak" | "duration" | "impulse" ... (docs/scene.md) */
-    double from, to;            /* time window, defaults 0 and end */
-    double level;               /* threshold of norms that have one */
-    double tolerance, scale;    /* scale 0: the reference's own size */
+    ab_number reference;     /* formula of t */
+    char *norm;              /* "final" | "max" | "l2" | "mean" | "peak" | "duration" | "impulse" ... (docs/scene.md) */
+    double from, to;         /* time window, defaults 0 and end */
+    double level;            /* threshold of norms that have one */
+    double tolerance, scale; /* scale 0: the reference's own size */
 } ab_expect_spec;
 
 typedef struct ab_scene {
     char *path, *title;
     ab_space space;
     int dimension;
-    ab_number gravity[2];                    /* m/s2, formulas of t */
-    double damping_local, damping_until;     /* until: s, INFINITY when always */
-    double time_end, time_dt, time_cfl;      /* dt 0: by cfl; cfl 0: by dt */
+    ab_number gravity[2];                /* m/s2, formulas of t */
+    double damping_local, damping_until; /* until: s, INFINITY when always */
+    double time_end, time_dt, time_cfl;  /* dt 0: by cfl; cfl 0: by dt */
     ab_mark mark_time, mark_grid;
     double grid_from[2], grid_to[2], grid_cell;
     int grid_cells[2];
     ab_side_kind side[AB_SIDES];
-    ab_material_spec *materials; size_t material_count;
-    ab_body_spec *bodies;        size_t body_count;
-    ab_contact_spec *contacts;   size_t contact_count;
-    ab_load_spec *loads;         size_t load_count;
-    ab_monitor_spec *monitors;   size_t monitor_count;
-    ab_expect_spec *expects;     size_t expect_count;
-    long history_every;                      /* steps; default 1 */
-    double output_every;                     /* s; 0: only first and last frame when fields are asked for */
-    char **output_fields;        size_t output_field_count;
+    ab_material_spec *materials;
+    size_t material_count;
+    ab_body_spec *bodies;
+    size_t body_count;
+    ab_contact_spec *contacts;
+    size_t contact_count;
+    ab_load_spec *loads;
+    size_t load_count;
+    ab_monitor_spec *monitors;
+    size_t monitor_count;
+    ab_expect_spec *expects;
+    size_t expect_count;
+    long history_every;  /* steps; default 1 */
+    double output_every; /* s; 0: only first and last frame when fields are asked for */
+    char **output_fields;
+    size_t output_field_count;
     bool has_output, has_history;
-    struct ab_scene_private *private_;       /* document, parsers, arena */
+    struct ab_scene_private *private_; /* document, parsers, arena */
 } ab_scene;
 
-typedef struct ab_override { const char *path, *value; } ab_override; /* --set PATH=VALUE */
+typedef struct ab_override {
+    const char *path, *value;
+} ab_override; /* --set PATH=VALUE */
 
 /* Reads, applies overrides, checks everything. On AB_BAD_INPUT the report holds every mistake and *scene is NULL. */
-ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t override_count, ab_registry *registry, ab_scene **scene, ab_report *report);
+ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t override_count, ab_registry *registry, ab_scene **scene,
+                        ab_report *report);
 void ab_scene_destroy(ab_scene *scene);
 
 /* Writes the reference of every key (docs/scene.md) from the tables that check it. */

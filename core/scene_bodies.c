@@ -15,7 +15,8 @@ static void take_material(ab_scene_reader *r, const ab_node *node, const char *w
         if (strcmp(names[m], name) == 0) body->material = m;
     }
     if (body->material == SIZE_MAX)
-        ab_report_error(r->base.report, node->mark, "%s: there is no material '%.64s'%s", path, name, ab_suggest_tail(name, names, scene->material_count, tail, sizeof tail));
+        ab_report_error(r->base.report, node->mark, "%s: there is no material '%.64s'%s", path, name,
+                        ab_suggest_tail(name, names, scene->material_count, tail, sizeof tail));
 }
 
 static void take_fill(ab_scene_reader *r, const ab_node *node, const char *where, ab_body_spec *body) {
@@ -26,7 +27,8 @@ static void take_fill(ab_scene_reader *r, const ab_node *node, const char *where
     if (node != NULL && !ab_section_open(&r->base, &ab_section_fill, node, path, v)) return;
     char *rule = NULL;
     long per_cell = 4;
-    if (ab_read_word(&r->base, &ab_section_fill.keys[FILL_RULE], v[FILL_RULE], path, &rule)) body->fill = strcmp(rule, "gauss") == 0 ? AB_FILL_GAUSS : AB_FILL_REGULAR;
+    if (ab_read_word(&r->base, &ab_section_fill.keys[FILL_RULE], v[FILL_RULE], path, &rule))
+        body->fill = strcmp(rule, "gauss") == 0 ? AB_FILL_GAUSS : AB_FILL_REGULAR;
     ab_read_integer(&r->base, &ab_section_fill.keys[FILL_PER_CELL], v[FILL_PER_CELL], path, &per_cell);
     body->per_cell = (int)per_cell;
 }
@@ -41,7 +43,8 @@ static void take_basis(ab_scene_reader *r, const ab_node *node, const char *wher
     char path[AB_WHERE], *word = NULL;
     ab_where_join(path, where, "basis");
     body->basis = ab_reader_text(&r->base, "gimp");
-    if (ab_section_open(&r->base, &ab_section_basis, node, path, v) && v[BASIS_GIMP] != NULL && ab_read_word(&r->base, &ab_section_basis.keys[BASIS_GIMP], v[BASIS_GIMP], path, &word))
+    if (ab_section_open(&r->base, &ab_section_basis, node, path, v) && v[BASIS_GIMP] != NULL &&
+        ab_read_word(&r->base, &ab_section_basis.keys[BASIS_GIMP], v[BASIS_GIMP], path, &word))
         body->contiguous = strcmp(word, "contiguous") == 0;
 }
 
@@ -67,14 +70,17 @@ static void check_inside(ab_scene_reader *r, const ab_body_spec *body) {
     const double slack = 1e-9 * scene->grid_cell;
     bool inside = true, apart = false;
     for (int d = 0; d < 2; d++) {
-        const double from = scene->grid_from[d] - slack - 1e-12 * fabs(scene->grid_from[d]), to = scene->grid_to[d] + slack + 1e-12 * fabs(scene->grid_to[d]);
+        const double from = scene->grid_from[d] - slack - 1e-12 * fabs(scene->grid_from[d]),
+                     to = scene->grid_to[d] + slack + 1e-12 * fabs(scene->grid_to[d]);
         inside = inside && low[d] >= from && high[d] <= to;
         apart = apart || high[d] <= from || low[d] >= to;
     }
     if (!inside)
         ab_report_error(r->base.report, body->shape.mark,
-                        "body '%s' lies %s outside the grid: it reaches from [%.10g, %.10g] to [%.10g, %.10g] m, the grid from [%.10g, %.10g] to [%.10g, %.10g] m; make the grid larger or move the body",
-                        body->name, apart ? "wholly" : "partly", low[0], low[1], high[0], high[1], scene->grid_from[0], scene->grid_from[1], scene->grid_to[0], scene->grid_to[1]);
+                        "body '%s' lies %s outside the grid: it reaches from [%.10g, %.10g] to [%.10g, %.10g] m, the grid from [%.10g, "
+                        "%.10g] to [%.10g, %.10g] m; make the grid larger or move the body",
+                        body->name, apart ? "wholly" : "partly", low[0], low[1], high[0], high[1], scene->grid_from[0], scene->grid_from[1],
+                        scene->grid_to[0], scene->grid_to[1]);
 }
 
 static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *body) {
@@ -93,16 +99,20 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
     ab_read_word(&r->base, &key[BODY_UPDATE], v[BODY_UPDATE], where, &body->update);
     ab_read_vector(&r->base, &key[BODY_VELOCITY], v[BODY_VELOCITY], where, body->velocity);
     ab_read_flag(&r->base, &key[BODY_GRAVITY], v[BODY_GRAVITY], where, &body->gravity);
-    if (v[BODY_SHAPE] != NULL && ab_scene_take_shape(r, v[BODY_SHAPE], ab_where_join(path, where, "shape"), &body->shape)) check_inside(r, body);
+    if (v[BODY_SHAPE] != NULL && ab_scene_take_shape(r, v[BODY_SHAPE], ab_where_join(path, where, "shape"), &body->shape))
+        check_inside(r, body);
     if (body->basis != NULL && body->update != NULL && strcmp(body->basis, "linear") == 0 && strcmp(body->update, "usl") == 0)
-        ab_report_warning(r->base.report, v[BODY_UPDATE]->mark, "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not", where);
+        ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
+                          "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",
+                          where);
 }
 
 void ab_scene_take_bodies(ab_scene_reader *r, const ab_node *node) {
     if (node == NULL) return;
     ab_scene *scene = r->scene;
     if (node->kind != AB_NODE_MAP || node->count == 0) {
-        ab_report_error(r->base.report, node->mark, "bodies must be a mapping {name: {method: ..., material: ..., shape: ...}, ...}, not %s",
+        ab_report_error(r->base.report, node->mark,
+                        "bodies must be a mapping {name: {method: ..., material: ..., shape: ...}, ...}, not %s",
                         node->kind == AB_NODE_MAP ? "an empty one" : ab_node_kind_name(node));
         return;
     }

@@ -21,12 +21,15 @@ static const ab_loaded_class *contact_class(ab_scene_reader *r, const ab_node *n
     const ab_loaded_class *found = ab_registry_find(r->registry, AB_CONTACT, name, node->mark, r->base.report);
     if (found == NULL) return NULL;
     if (!(found->class_.gives & gives)) {
-        ab_report_error(r->base.report, node->mark, "%s: '%s' %s (`abut plugins` lists what there is)", path, name,
-                        gives == AB_GIVE_POINTS ? "gives impulses but finds no contact points; name it as response, and as algorithm one that finds, such as multi-velocity"
-                                                : "finds contact points but gives no impulses; name it as algorithm, and as response one that does, such as coulomb");
+        ab_report_error(
+            r->base.report, node->mark, "%s: '%s' %s (`abut plugins` lists what there is)", path, name,
+            gives == AB_GIVE_POINTS
+                ? "gives impulses but finds no contact points; name it as response, and as algorithm one that finds, such as multi-velocity"
+                : "finds contact points but gives no impulses; name it as algorithm, and as response one that does, such as coulomb");
         return NULL;
     }
-    if (!(found->class_.spaces & AB_PLANE_STRAIN)) ab_report_error(r->base.report, node->mark, "%s: '%s' does not work in plane strain", path, name);
+    if (!(found->class_.spaces & AB_PLANE_STRAIN))
+        ab_report_error(r->base.report, node->mark, "%s: '%s' does not work in plane strain", path, name);
     return found;
 }
 
@@ -36,26 +39,30 @@ static void take_plugins(ab_scene_reader *r, const ab_node *node, const ab_node 
     if (v[CONTACT_RESPONSE] != NULL) {
         contact->responder = contact_class(r, v[CONTACT_RESPONSE], where, "response", AB_GIVE_IMPULSE);
     } else if (contact->finder != NULL) {
-        if (contact->finder->class_.gives & AB_GIVE_IMPULSE) contact->responder = contact->finder;
-        else contact->responder = ab_registry_find(r->registry, AB_CONTACT, "coulomb", node->mark, r->base.report);
+        if (contact->finder->class_.gives & AB_GIVE_IMPULSE)
+            contact->responder = contact->finder;
+        else
+            contact->responder = ab_registry_find(r->registry, AB_CONTACT, "coulomb", node->mark, r->base.report);
     }
     if (contact->finder == NULL || contact->responder == NULL) return;
     const char *names[MOST_NAMES];
     size_t count = ab_settings_names(&contact->finder->class_, names, 0, MOST_NAMES);
     if (contact->responder != contact->finder) count = ab_settings_names(&contact->responder->class_, names, count, MOST_NAMES);
-    const bool swapped = (v[CONTACT_ALGORITHM] && v[CONTACT_ALGORITHM]->override_) || (v[CONTACT_RESPONSE] && v[CONTACT_RESPONSE]->override_);
+    const bool swapped =
+        (v[CONTACT_ALGORITHM] && v[CONTACT_ALGORITHM]->override_) || (v[CONTACT_RESPONSE] && v[CONTACT_RESPONSE]->override_);
     ab_section_unknown(&r->base, &ab_section_contact, names, count, swapped, node, where);
     contact->finder_settings = ab_settings_read(&r->base, &contact->finder->class_, node, where);
-    contact->responder_settings =
-        contact->responder == contact->finder ? contact->finder_settings : ab_settings_read(&r->base, &contact->responder->class_, node, where);
+    contact->responder_settings = contact->responder == contact->finder
+                                      ? contact->finder_settings
+                                      : ab_settings_read(&r->base, &contact->responder->class_, node, where);
 }
 
 static void add_pair(ab_scene_reader *r, pairs *all, const ab_contact_spec *contact, size_t a, size_t b, ab_mark mark, const char *where) {
     ab_scene *scene = r->scene;
     uint32_t *seen = pair(all, a, b);
     if (*seen != 0) {
-        ab_report_error(r->base.report, mark, "%s: bodies '%s' and '%s' meet already in the entry of line %d; one entry a pair", where, scene->bodies[a].name, scene->bodies[b].name,
-                        scene->contacts[*seen - 1].mark.line);
+        ab_report_error(r->base.report, mark, "%s: bodies '%s' and '%s' meet already in the entry of line %d; one entry a pair", where,
+                        scene->bodies[a].name, scene->bodies[b].name, scene->contacts[*seen - 1].mark.line);
         return;
     }
     if (scene->contact_count == MOST_CONTACTS) {
@@ -75,8 +82,10 @@ static void take_pair(ab_scene_reader *r, pairs *all, const ab_node *node, const
     if (node->kind == AB_NODE_SCALAR && strcmp(node->text, "all") == 0) {
         if (bodies < 2) ab_report_error(r->base.report, node->mark, "%s: all means every pair, but there is only one body", path);
         for (size_t a = 0; a < bodies && r->scene->contact_count < MOST_CONTACTS; a++)
-            for (size_t b = a + 1; b < bodies && r->scene->contact_count < MOST_CONTACTS; b++) add_pair(r, all, contact, a, b, node->mark, where);
-        if (bodies * (bodies - 1) / 2 > MOST_CONTACTS) ab_report_error(r->base.report, node->mark, "%s: more than %d pairs of bodies", path, MOST_CONTACTS);
+            for (size_t b = a + 1; b < bodies && r->scene->contact_count < MOST_CONTACTS; b++)
+                add_pair(r, all, contact, a, b, node->mark, where);
+        if (bodies * (bodies - 1) / 2 > MOST_CONTACTS)
+            ab_report_error(r->base.report, node->mark, "%s: more than %d pairs of bodies", path, MOST_CONTACTS);
         return;
     }
     if (node->kind != AB_NODE_LIST || node->count != 2) {
@@ -89,8 +98,11 @@ static void take_pair(ab_scene_reader *r, pairs *all, const ab_node *node, const
         if (name != NULL) body[i] = ab_scene_body_named(r, name, node->items[i]->mark, path);
     }
     if (body[0] < 0 || body[1] < 0) return;
-    if (body[0] == body[1]) ab_report_error(r->base.report, node->mark, "%s: body '%s' cannot be in contact with itself; split it into two bodies", path, r->scene->bodies[body[0]].name);
-    else add_pair(r, all, contact, (size_t)body[0], (size_t)body[1], node->mark, where);
+    if (body[0] == body[1])
+        ab_report_error(r->base.report, node->mark, "%s: body '%s' cannot be in contact with itself; split it into two bodies", path,
+                        r->scene->bodies[body[0]].name);
+    else
+        add_pair(r, all, contact, (size_t)body[0], (size_t)body[1], node->mark, where);
 }
 
 /* Bodies that lie together without an entry are more often forgotten than meant. */
@@ -107,7 +119,8 @@ static void warn_strangers(ab_scene_reader *r, pairs *all) {
             for (int d = 0; d < 2; d++) apart = apart || low[d] > other_high[d] + slack || other_low[d] > high[d] + slack;
             if (apart) continue;
             said++;
-            ab_report_warning(r->base.report, scene->bodies[b].mark, "bodies '%s' and '%s' touch or overlap at the start but have no entry in contact: they do not see each other",
+            ab_report_warning(r->base.report, scene->bodies[b].mark,
+                              "bodies '%s' and '%s' touch or overlap at the start but have no entry in contact: they do not see each other",
                               scene->bodies[a].name, scene->bodies[b].name);
         }
     }
@@ -118,7 +131,8 @@ void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
     const size_t bodies = scene->body_count;
     size_t entries = node != NULL && node->kind == AB_NODE_LIST ? node->count : 0;
     if (entries > MOST_ENTRIES) {
-        ab_report_error(r->base.report, node->mark, "contact has %zu entries, more than %d; bodies: all stands for every pair", entries, MOST_ENTRIES);
+        ab_report_error(r->base.report, node->mark, "contact has %zu entries, more than %d; bodies: all stands for every pair", entries,
+                        MOST_ENTRIES);
         entries = 0;
     }
     size_t room = bodies * (bodies > 0 ? bodies - 1 : 0) / 2;

@@ -12,13 +12,15 @@ static void take_sides(ab_scene_reader *r, const ab_node *node) {
     for (int s = 0; s < SIDES_KEYS; s++) {
         const ab_key *key = &ab_section_sides.keys[s];
         if (v[s] != NULL && v[s]->kind == AB_NODE_MAP) {
-            ab_report_error(r->base.report, v[s]->mark, "grid.sides.%s: boundary plugins at sides are not in this version yet; there is: free, roller, fixed, outflow", key->name);
+            ab_report_error(r->base.report, v[s]->mark,
+                            "grid.sides.%s: boundary plugins at sides are not in this version yet; there is: free, roller, fixed, outflow",
+                            key->name);
             continue;
         }
         char *word = NULL;
         if (!ab_read_word(&r->base, key, v[s], "grid.sides", &word)) continue;
-        r->scene->side[s] = strcmp(word, "roller") == 0  ? AB_SIDE_ROLLER
-                            : strcmp(word, "fixed") == 0 ? AB_SIDE_FIXED
+        r->scene->side[s] = strcmp(word, "roller") == 0    ? AB_SIDE_ROLLER
+                            : strcmp(word, "fixed") == 0   ? AB_SIDE_FIXED
                             : strcmp(word, "outflow") == 0 ? AB_SIDE_OUTFLOW
                                                            : AB_SIDE_FREE;
     }
@@ -44,8 +46,9 @@ static void count_cells(ab_scene_reader *r, int d, ab_mark mark) {
         whole = ceil(cells);
         if (side != AB_SIDE_FREE && side != AB_SIDE_OUTFLOW) {
             ab_report_error(r->base.report, mark,
-                            "grid: from %.10g to %.10g m along %c is %.8g cells of %.10g m, not a whole number, and the %s side is held there; set grid.to to %.10g or %.10g along %c", from,
-                            to, axis, cells, cell, d == 0 ? "right" : "top", from + floor(cells) * cell, from + whole * cell, axis);
+                            "grid: from %.10g to %.10g m along %c is %.8g cells of %.10g m, not a whole number, and the %s side is held "
+                            "there; set grid.to to %.10g or %.10g along %c",
+                            from, to, axis, cells, cell, d == 0 ? "right" : "top", from + floor(cells) * cell, from + whole * cell, axis);
             return;
         }
     }

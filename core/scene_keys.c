@@ -4,8 +4,9 @@
 #include <math.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define SECTION(name_, title_, keys_, more_, help_, example_)                                                                                      \
-    const ab_section ab_section_##name_ = {.title = title_, .help = help_, .example = example_, .keys = keys_, .count = COUNT(keys_), .more = more_}
+#define SECTION(name_, title_, keys_, more_, help_, example_)                                                                              \
+    const ab_section ab_section_##name_ = {                                                                                                \
+        .title = title_, .help = help_, .example = example_, .keys = keys_, .count = COUNT(keys_), .more = more_}
 
 /* RANGE adds the flag; ANY leaves a side open. */
 #define ANY INFINITY
@@ -17,7 +18,8 @@ static const ab_key top[] = {
     [TOP_TITLE] = {"title", AB_KEY_TEXT, .initial = "", .help = "one line that says what this is"},
     [TOP_SPACE] = {"space", AB_KEY_WORD, .initial = "plane-strain", .words = "plane-strain|!axisymmetric|!3d", .help = "kind of space"},
     [TOP_CONSTANTS] = {"constants", AB_KEY_SECTION, .help = "names for numbers, used in every expression"},
-    [TOP_GRAVITY] = {"gravity", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLE_T, .help = "acceleration of gravity"},
+    [TOP_GRAVITY] = {"gravity", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLE_T,
+                     .help = "acceleration of gravity"},
     [TOP_DAMPING] = {"damping", AB_KEY_SECTION, .help = "local non-viscous damping"},
     [TOP_TIME] = {"time", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "how long, and in which steps"},
     [TOP_GRID] = {"grid", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "the background grid"},
@@ -34,22 +36,28 @@ static const ab_key top[] = {
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_LATER, .help = "leave the key out"},
     [TOP_TRADE] = {"trade", AB_KEY_LATER, .help = "vary a setting with --set PATH=VALUE"},
 };
-SECTION(top, "The scene", top, NULL, "Top level of the file.", "abut: 1\ntitle: Block on a plane\nspace: plane-strain\ngravity: [0, -9.81]\n");
+SECTION(top, "The scene", top, NULL, "Top level of the file.",
+        "abut: 1\ntitle: Block on a plane\nspace: plane-strain\ngravity: [0, -9.81]\n");
 
 static const ab_key damping[] = {
     [DAMPING_LOCAL] = {"local", AB_KEY_NUMBER, .unit = "1", .initial = "0", .flags = AB_KEY_RANGE | AB_KEY_MAX_OPEN, .min = 0, .max = 1,
                        .help = "part of the unbalanced force that is taken away against the motion"},
     [DAMPING_UNTIL] = {"until", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "time when the damping ends; without it: never"},
 };
-SECTION(damping, "damping", damping, NULL, "Local non-viscous damping, to settle a scene before it begins in earnest.", "damping: {local: 0.5, until: 0.3}\n");
+SECTION(damping, "damping", damping, NULL, "Local non-viscous damping, to settle a scene before it begins in earnest.",
+        "damping: {local: 0.5, until: 0.3}\n");
 
 static const ab_key time_[] = {
     [TIME_END] = {"end", AB_KEY_NUMBER, .unit = "s", POSITIVE_REQUIRED, .help = "time when the run ends"},
     [TIME_DT] = {"dt", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "fixed time step; in place of cfl"},
-    [TIME_CFL] = {"cfl", AB_KEY_NUMBER, .unit = "1", .initial = "0.25", POSITIVE, .help = "time step as a part of the critical one; in place of dt. 0.5 is enough for bodies that stay small-strained in their cells; fast spin across cells makes energy there"},
+    [TIME_CFL] = {"cfl", AB_KEY_NUMBER, .unit = "1", .initial = "0.25", POSITIVE,
+                  .help = "time step as a part of the critical one; in place of dt. 0.5 is enough for bodies that stay small-strained in "
+                          "their cells; fast spin across cells makes energy there"},
 };
-SECTION(time, "time", time_, NULL, "`dt` or `cfl`, not both; with neither, cfl 0.25. `--set time.dt=...` takes the place of a cfl in the file, and the other way round.",
-        "time: {end: 1.5, cfl: 0.4}\n");
+SECTION(
+    time, "time", time_, NULL,
+    "`dt` or `cfl`, not both; with neither, cfl 0.25. `--set time.dt=...` takes the place of a cfl in the file, and the other way round.",
+    "time: {end: 1.5, cfl: 0.4}\n");
 
 static const ab_key grid[] = {
     [GRID_FROM] = {"from", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "lower left corner"},
@@ -58,7 +66,8 @@ static const ab_key grid[] = {
     [GRID_SIDES] = {"sides", AB_KEY_SECTION, .help = "what happens at the four sides"},
 };
 SECTION(grid, "grid", grid, NULL,
-        "Empty grid costs nothing. The extent must be a whole number of cells; where the side at `to` is free or outflow it is extended to the next one.",
+        "Empty grid costs nothing. The extent must be a whole number of cells; where the side at `to` is free or outflow it is extended to "
+        "the next one.",
         "grid:\n  from: [0, 0]\n  to: [8, 4]\n  cell: 0.25\n  sides: {bottom: fixed, left: roller, right: outflow}\n");
 
 #define SIDE_WORDS "free|roller|fixed|outflow"
@@ -69,7 +78,8 @@ static const ab_key sides[] = {
     [SIDES_TOP] = {"top", AB_KEY_WORD, .words = SIDE_WORDS, .initial = "free", .help = "y = to"},
 };
 SECTION(sides, "grid.sides", sides, NULL,
-        "`fixed` holds both directions, `roller` the one across the side. A point that leaves through a `free` side stops the run; `outflow` counts it out.",
+        "`fixed` holds both directions, `roller` the one across the side. A point that leaves through a `free` side stops the run; "
+        "`outflow` counts it out.",
         "sides: {left: roller, right: roller, bottom: fixed, top: free}\n");
 
 static const ab_key material[] = {
@@ -80,63 +90,80 @@ SECTION(material, "materials.NAME", material, "every setting that the model decl
         "materials:\n  soil: {model: linear-elastic, E: \"20 MPa\", nu: 0.3, density: 1800}\n");
 
 static const ab_key body[] = {
-    [BODY_METHOD] = {"method", AB_KEY_WORD, .flags = AB_KEY_REQUIRED, .words = "material-points|!finite-elements", .help = "how the body is computed"},
+    [BODY_METHOD] = {"method", AB_KEY_WORD, .flags = AB_KEY_REQUIRED, .words = "material-points|!finite-elements",
+                     .help = "how the body is computed"},
     [BODY_MATERIAL] = {"material", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of one of the materials"},
     [BODY_SHAPE] = {"shape", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "outline at the start"},
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
-    [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|!bspline2|!bspline3", .initial = "gimp", .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
-    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|!apic|!tpic|!xpic", .initial = "flip", .help = "how velocities come back; a blend is {flip: 0.99}"},
-    [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl", .help = "when stress is updated: first, last, last from mapped-back velocities"},
-    [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY, .help = "velocity at the start"},
+    [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|!bspline2|!bspline3", .initial = "gimp",
+                    .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
+    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|!apic|!tpic|!xpic", .initial = "flip",
+                       .help = "how velocities come back; a blend is {flip: 0.99}"},
+    [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",
+                     .help = "when stress is updated: first, last, last from mapped-back velocities"},
+    [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
+                       .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
     [BODY_MESH] = {"mesh", AB_KEY_LATER, .help = "finite-element bodies come later; use method: material-points with a shape"},
     [BODY_FIX] = {"fix", AB_KEY_LATER, .help = "finite-element bodies come later; use the sides of the grid"},
 };
 SECTION(body, "bodies.NAME", body, NULL, "One entry a body. Each body has its own velocity field; bodies meet only through `contact`.",
-        "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", 0]\n");
+        "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
+        "0]\n");
 
 static const ab_key shape[] = {
     [SHAPE_BOX] = {"box", AB_KEY_SECTION, .unit = "m", .help = "[[x, y], [x, y]]: lower left and upper right corner"},
     [SHAPE_DISC] = {"disc", AB_KEY_SECTION, .unit = "m", .help = "{center: [x, y], radius: r}"},
     [SHAPE_RING] = {"ring", AB_KEY_SECTION, .unit = "m", .help = "{center: [x, y], radius: r, inner: r}"},
-    [SHAPE_POLYGON] = {"polygon", AB_KEY_SECTION, .unit = "m", .help = "[[x, y], ...], three corners or more, either way round, not crossing itself"},
+    [SHAPE_POLYGON] = {"polygon", AB_KEY_SECTION, .unit = "m",
+                       .help = "[[x, y], ...], three corners or more, either way round, not crossing itself"},
     [SHAPE_UNION] = {"union", AB_KEY_SECTION, .help = "list of shapes taken together"},
     [SHAPE_MESH] = {"mesh", AB_KEY_LATER, .help = "write the outline as a polygon"},
 };
 SECTION(shape, "bodies.NAME.shape", shape, NULL, "One of these.", "shape: {disc: {center: [1, 1], radius: \"50 cm\"}}\n");
 
-#define CENTER {"center", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "middle"}
-#define RADIUS {"radius", AB_KEY_NUMBER, .unit = "m", POSITIVE_REQUIRED, .help = "outer radius"}
+#define CENTER                                                                                                                             \
+    { "center", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "middle" }
+#define RADIUS                                                                                                                             \
+    { "radius", AB_KEY_NUMBER, .unit = "m", POSITIVE_REQUIRED, .help = "outer radius" }
 static const ab_key disc[] = {[ROUND_CENTER] = CENTER, [ROUND_RADIUS] = RADIUS};
 SECTION(disc, "disc", disc, NULL, "A full circle.", NULL);
 static const ab_key ring[] = {
-    [ROUND_CENTER] = CENTER, [ROUND_RADIUS] = RADIUS, [ROUND_INNER] = {"inner", AB_KEY_NUMBER, .unit = "m", POSITIVE_REQUIRED, .help = "inner radius, less than radius"}};
+    [ROUND_CENTER] = CENTER,
+    [ROUND_RADIUS] = RADIUS,
+    [ROUND_INNER] = {"inner", AB_KEY_NUMBER, .unit = "m", POSITIVE_REQUIRED, .help = "inner radius, less than radius"}};
 SECTION(ring, "ring", ring, NULL, "A circle with a round hole.", NULL);
 
 static const ab_key fill[] = {
     [FILL_RULE] = {"rule", AB_KEY_WORD, .words = "regular|gauss|!cvt", .initial = "regular",
                    .help = "regular: a lattice fitted to the outline; gauss: the Gauss points of each cell"},
-    [FILL_PER_CELL] = {"per_cell", AB_KEY_INTEGER, .unit = "1", .initial = "4", .flags = AB_KEY_RANGE, .min = 1, .max = 10000, .help = "points wanted in a full cell"},
+    [FILL_PER_CELL] = {"per_cell", AB_KEY_INTEGER, .unit = "1", .initial = "4", .flags = AB_KEY_RANGE, .min = 1, .max = 10000,
+                       .help = "points wanted in a full cell"},
     [FILL_POINTS] = {"points", AB_KEY_LATER, .help = "it belongs to rule cvt; use rule regular or gauss with per_cell"},
     [FILL_SEED] = {"seed", AB_KEY_LATER, .help = "it belongs to rule cvt; use rule regular or gauss with per_cell"},
 };
 SECTION(fill, "bodies.NAME.fill", fill, NULL, "How material points are placed.", "fill: {rule: regular, per_cell: 9}\n");
 
 static const ab_key basis[] = {
-    [BASIS_GIMP] = {"gimp", AB_KEY_WORD, .words = "contiguous|fixed", .flags = AB_KEY_REQUIRED, .help = "contiguous: domains follow the stretch (default); fixed: they keep their size"},
+    [BASIS_GIMP] = {"gimp", AB_KEY_WORD, .words = "contiguous|fixed", .flags = AB_KEY_REQUIRED,
+                    .help = "contiguous: domains follow the stretch (default); fixed: they keep their size"},
 };
 SECTION(basis, "bodies.NAME.basis", basis, NULL, "As a mapping, in place of a word.", "basis: {gimp: fixed}\n");
 
 static const ab_key transfer[] = {
-    [TRANSFER_FLIP] = {"flip", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0, .max = 1, .help = "part of FLIP; the rest is PIC"},
+    [TRANSFER_FLIP] = {"flip", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0, .max = 1,
+                       .help = "part of FLIP; the rest is PIC"},
     [TRANSFER_XPIC] = {"xpic", AB_KEY_LATER, .help = "there is flip, pic and {flip: part}"},
 };
 SECTION(transfer, "bodies.NAME.transfer", transfer, NULL, "As a mapping, in place of a word.", "transfer: {flip: 0.99}\n");
 
 static const ab_key contact[] = {
     [CONTACT_BODIES] = {"bodies", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "two names [a, b], or all for every pair"},
-    [CONTACT_ALGORITHM] = {"algorithm", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a contact plugin that finds contact points"},
-    [CONTACT_RESPONSE] = {"response", AB_KEY_NAME, .help = "name of a contact plugin that gives impulses; default: the algorithm itself where it does, else coulomb"},
+    [CONTACT_ALGORITHM] = {"algorithm", AB_KEY_NAME, .flags = AB_KEY_REQUIRED,
+                           .help = "name of a contact plugin that finds contact points"},
+    [CONTACT_RESPONSE] = {"response", AB_KEY_NAME,
+                          .help =
+                              "name of a contact plugin that gives impulses; default: the algorithm itself where it does, else coulomb"},
 };
 SECTION(contact, "contact[i]", contact, "every setting that the algorithm or the response declares (`abut plugins show NAME`)",
         "A list, one entry a pair. Bodies without an entry do not see each other.",
@@ -145,9 +172,11 @@ SECTION(contact, "contact[i]", contact, "every setting that the algorithm or the
 static const ab_key load[] = {
     [LOAD_BODY] = {"body", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a body"},
     [LOAD_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "part of its outline at the start"},
-    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T, .help = "force per area; follows the points"},
+    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
+                       .help = "force per area; follows the points"},
 };
-SECTION(load, "loads[i]", load, NULL, "A list of tractions.", "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n");
+SECTION(load, "loads[i]", load, NULL, "A list of tractions.",
+        "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n");
 
 static const ab_key where[] = {
     [WHERE_ALL] = {"all", AB_KEY_FLAG, .help = "true: everywhere"},
@@ -155,7 +184,8 @@ static const ab_key where[] = {
     [WHERE_X] = {"x", AB_KEY_SECTION, .unit = "m", .help = "a place or a range [a, b]"},
     [WHERE_Y] = {"y", AB_KEY_SECTION, .unit = "m", .help = "a place or a range [a, b]"},
 };
-SECTION(where, "where", where, NULL, "A set of places of a body at the start; several keys together: all must hold.", "where: {side: top, x: [0, 0.5]}\n");
+SECTION(where, "where", where, NULL, "A set of places of a body at the start; several keys together: all must hold.",
+        "where: {side: top, x: [0, 0.5]}\n");
 
 static const ab_key monitor[] = {
     [MONITOR_NAME] = {"name", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "its column in history.csv"},
@@ -163,40 +193,54 @@ static const ab_key monitor[] = {
     [MONITOR_CONTACT] = {"contact", AB_KEY_INTEGER, .unit = "1", .help = "of a contact: its place in the list, from 0"},
     [MONITOR_VALUE] = {"value", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "what is followed; the lists stand below"},
     [MONITOR_AT] = {"at", AB_KEY_POINT, .unit = "m", .help = "of the one point that is nearest to this place at the start"},
-    [MONITOR_OVER] = {"over", AB_KEY_WORD, .words = "mass|volume|max|min|sum", .help = "how the body's points become one number; default mass"},
+    [MONITOR_OVER] = {"over", AB_KEY_WORD, .words = "mass|volume|max|min|sum",
+                      .help = "how the body's points become one number; default mass"},
     [MONITOR_WHERE] = {"where", AB_KEY_SECTION, .help = "of the points that stood here at the start"},
 };
-SECTION(monitor, "monitors[i]", monitor, NULL, "A list.", "monitors:\n  - {name: block_x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}\n");
+SECTION(monitor, "monitors[i]", monitor, NULL, "A list.",
+        "monitors:\n  - {name: block_x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}\n");
 
 static const ab_key history[] = {
-    [HISTORY_EVERY] = {"every", AB_KEY_INTEGER, .unit = "1", .initial = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 1e9, .help = "steps from row to row"},
+    [HISTORY_EVERY] = {"every", AB_KEY_INTEGER, .unit = "1", .initial = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 1e9,
+                       .help = "steps from row to row"},
 };
 SECTION(history, "history", history, NULL, "Rows of history.csv.", "history: {every: 10}\n");
 
 static const ab_key output[] = {
-    [OUTPUT_EVERY] = {"every", AB_KEY_NUMBER, .unit = "s", .initial = "0", .flags = AB_KEY_RANGE, .min = 0, .max = ANY, .help = "time from frame to frame; 0: the first and the last only"},
+    [OUTPUT_EVERY] = {"every", AB_KEY_NUMBER, .unit = "s", .initial = "0", .flags = AB_KEY_RANGE, .min = 0, .max = ANY,
+                      .help = "time from frame to frame; 0: the first and the last only"},
     [OUTPUT_FIELDS] = {"fields", AB_KEY_SECTION, .help = "list of fields; positions are always there"},
 };
-SECTION(output, "output", output, NULL, "Frames of results.h5. Only what is asked for is written. Besides the fields below, a state of a material by its name.",
+SECTION(output, "output", output, NULL,
+        "Frames of results.h5. Only what is asked for is written. Besides the fields below, a state of a material by its name.",
         "output: {every: \"20 ms\", fields: [stress, velocity]}\n");
 
 static const ab_key expect[] = {
     [EXPECT_NAME] = {"name", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "what the closing table calls it"},
     [EXPECT_MONITOR] = {"monitor", AB_KEY_NAME, .help = "name of a monitor"},
     [EXPECT_COLUMN] = {"column", AB_KEY_TEXT, .help = "or a ledger column of history.csv (kinetic, block.kinetic, remainder ...)"},
-    [EXPECT_REFERENCE] = {"reference", AB_KEY_FORMULA, .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T, .help = "the right answer, in the unit of the monitor and norm"},
-    [EXPECT_NORM] = {"norm", AB_KEY_WORD, .initial = "final", .words = "final|max|l2|mean|peak|min|range|time-of-peak|first-above|last-above|duration|integral|impulse|slope",
+    [EXPECT_REFERENCE] = {"reference", AB_KEY_FORMULA, .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
+                          .help = "the right answer, in the unit of the monitor and norm"},
+    [EXPECT_NORM] = {"norm", AB_KEY_WORD, .initial = "final",
+                     .words = "final|max|l2|mean|peak|min|range|time-of-peak|first-above|last-above|duration|integral|impulse|slope",
                      .help = "what is compared; the list stands below"},
-    [EXPECT_TOLERANCE] = {"tolerance", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0, .max = ANY, .help = "largest error allowed, relative to scale"},
-    [EXPECT_SCALE] = {"scale", AB_KEY_NUMBER, POSITIVE, .help = "size that errors are measured by, in the unit of the reference; default: the reference's own size"},
-    [EXPECT_FROM] = {"from", AB_KEY_NUMBER, .unit = "s", .initial = "0", .flags = AB_KEY_RANGE, .min = 0, .max = ANY, .help = "beginning of the time window"},
+    [EXPECT_TOLERANCE] = {"tolerance", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0, .max = ANY,
+                          .help = "largest error allowed, relative to scale"},
+    [EXPECT_SCALE] = {"scale", AB_KEY_NUMBER, POSITIVE,
+                      .help = "size that errors are measured by, in the unit of the reference; default: the reference's own size"},
+    [EXPECT_FROM] = {"from", AB_KEY_NUMBER, .unit = "s", .initial = "0", .flags = AB_KEY_RANGE, .min = 0, .max = ANY,
+                     .help = "beginning of the time window"},
     [EXPECT_TO] = {"to", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "end of the time window; default: the end of the run"},
     [EXPECT_LEVEL] = {"level", AB_KEY_NUMBER, .help = "threshold, in the unit of the monitor; for norms that ask for one"},
 };
-SECTION(expect, "expect[i]", expect, NULL, "A list. Each compares a monitor or a column with a reference; `abut run --strict` exits 3 when one misses.",
+SECTION(expect, "expect[i]", expect, NULL,
+        "A list. Each compares a monitor or a column with a reference; `abut run --strict` exits 3 when one misses.",
         "expect:\n  - {name: slides, monitor: block_x, reference: \"0.5*a*t^2\", norm: l2, tolerance: 0.02}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top, &ab_section_damping, &ab_section_time, &ab_section_grid, &ab_section_sides, &ab_section_material,
-                                         &ab_section_body, &ab_section_shape, &ab_section_disc, &ab_section_ring, &ab_section_fill, &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_contact, &ab_section_load, &ab_section_where, &ab_section_monitor,
-                                         &ab_section_history, &ab_section_output, &ab_section_expect, NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping, &ab_section_time,
+                                         &ab_section_grid,     &ab_section_sides,   &ab_section_material,
+                                         &ab_section_body,     &ab_section_shape,   &ab_section_disc,
+                                         &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
+                                         &ab_section_transfer, &ab_section_contact, &ab_section_load,
+                                         &ab_section_where,    &ab_section_monitor, &ab_section_history,
+                                         &ab_section_output,   &ab_section_expect,  NULL};

@@ -4,14 +4,48 @@
 
 #include "core/schema.h"
 
-enum { TOP_ABUT, TOP_TITLE, TOP_SPACE, TOP_CONSTANTS, TOP_GRAVITY, TOP_DAMPING, TOP_TIME, TOP_GRID, TOP_MATERIALS, TOP_BODIES, TOP_CONTACT, TOP_LOADS,
-       TOP_MONITORS, TOP_HISTORY, TOP_OUTPUT, TOP_EXPECT, TOP_STAGES, TOP_BOUNDARIES, TOP_CHECKPOINT, TOP_TRADE, TOP_KEYS };
+enum {
+    TOP_ABUT,
+    TOP_TITLE,
+    TOP_SPACE,
+    TOP_CONSTANTS,
+    TOP_GRAVITY,
+    TOP_DAMPING,
+    TOP_TIME,
+    TOP_GRID,
+    TOP_MATERIALS,
+    TOP_BODIES,
+    TOP_CONTACT,
+    TOP_LOADS,
+    TOP_MONITORS,
+    TOP_HISTORY,
+    TOP_OUTPUT,
+    TOP_EXPECT,
+    TOP_STAGES,
+    TOP_BOUNDARIES,
+    TOP_CHECKPOINT,
+    TOP_TRADE,
+    TOP_KEYS
+};
 enum { DAMPING_LOCAL, DAMPING_UNTIL, DAMPING_KEYS };
 enum { TIME_END, TIME_DT, TIME_CFL, TIME_KEYS };
 enum { GRID_FROM, GRID_TO, GRID_CELL, GRID_SIDES, GRID_KEYS };
 enum { SIDES_LEFT, SIDES_RIGHT, SIDES_BOTTOM, SIDES_TOP, SIDES_KEYS }; /* in the order of AB_LEFT ... */
 enum { MATERIAL_MODEL, MATERIAL_DENSITY, MATERIAL_KEYS };
-enum { BODY_METHOD, BODY_MATERIAL, BODY_SHAPE, BODY_FILL, BODY_BASIS, BODY_TRANSFER, BODY_UPDATE, BODY_VELOCITY, BODY_GRAVITY, BODY_MESH, BODY_FIX, BODY_KEYS };
+enum {
+    BODY_METHOD,
+    BODY_MATERIAL,
+    BODY_SHAPE,
+    BODY_FILL,
+    BODY_BASIS,
+    BODY_TRANSFER,
+    BODY_UPDATE,
+    BODY_VELOCITY,
+    BODY_GRAVITY,
+    BODY_MESH,
+    BODY_FIX,
+    BODY_KEYS
+};
 enum { SHAPE_BOX, SHAPE_DISC, SHAPE_RING, SHAPE_POLYGON, SHAPE_UNION, SHAPE_MESH, SHAPE_KEYS };
 enum { ROUND_CENTER, ROUND_RADIUS, ROUND_INNER, ROUND_KEYS };
 enum { FILL_RULE, FILL_PER_CELL, FILL_POINTS, FILL_SEED, FILL_KEYS };
@@ -23,11 +57,23 @@ enum { WHERE_ALL, WHERE_SIDE, WHERE_X, WHERE_Y, WHERE_KEYS };
 enum { MONITOR_NAME, MONITOR_BODY, MONITOR_CONTACT, MONITOR_VALUE, MONITOR_AT, MONITOR_OVER, MONITOR_WHERE, MONITOR_KEYS };
 enum { HISTORY_EVERY, HISTORY_KEYS };
 enum { OUTPUT_EVERY, OUTPUT_FIELDS, OUTPUT_KEYS };
-enum { EXPECT_NAME, EXPECT_MONITOR, EXPECT_COLUMN, EXPECT_REFERENCE, EXPECT_NORM, EXPECT_TOLERANCE, EXPECT_SCALE, EXPECT_FROM, EXPECT_TO, EXPECT_LEVEL, EXPECT_KEYS };
+enum {
+    EXPECT_NAME,
+    EXPECT_MONITOR,
+    EXPECT_COLUMN,
+    EXPECT_REFERENCE,
+    EXPECT_NORM,
+    EXPECT_TOLERANCE,
+    EXPECT_SCALE,
+    EXPECT_FROM,
+    EXPECT_TO,
+    EXPECT_LEVEL,
+    EXPECT_KEYS
+};
 
-extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material, ab_section_body,
-    ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer, ab_section_contact, ab_section_load,
-    ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect;
+extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material,
+    ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
+    ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

@@ -9,7 +9,9 @@ enum { MOST_WORDS = 400, MOST_MONITORS = 1000, UNIT = 80 };
 
 /* Unit of a monitor's value; "" where the value is not known. */
 static const char *value_unit(const ab_scene *scene, const ab_monitor_spec *monitor) {
-    const ab_words *words = monitor->body >= 0 ? &ab_words_body_values : monitor->contact >= 0 ? &ab_words_contact_values : &ab_words_scene_values;
+    const ab_words *words = monitor->body >= 0      ? &ab_words_body_values
+                            : monitor->contact >= 0 ? &ab_words_contact_values
+                                                    : &ab_words_scene_values;
     if (monitor->value == NULL) return "";
     const ab_word *word = ab_words_find(words, monitor->value);
     if (word != NULL) return word->unit;
@@ -22,7 +24,8 @@ static const char *value_unit(const ab_scene *scene, const ab_monitor_spec *moni
 
 /* "plastic_strain" or "back_stress.xy": a declared state of the body's material, with a component where it has several. */
 static bool is_state(const ab_scene *scene, size_t body, const char *value) {
-    static const char *const components[] = {[AB_SCALAR] = "", [AB_VECTOR] = "x y", [AB_SYMMETRIC] = "xx yy zz xy", [AB_FULL] = "xx xy yx yy zz"};
+    static const char *const components[] = {
+        [AB_SCALAR] = "", [AB_VECTOR] = "x y", [AB_SYMMETRIC] = "xx yy zz xy", [AB_FULL] = "xx xy yx yy zz"};
     char name[128];
     const size_t length = strcspn(value, ".");
     snprintf(name, sizeof name, "%.*s", (int)length, value);
@@ -41,7 +44,9 @@ static bool is_state(const ab_scene *scene, size_t body, const char *value) {
 
 static void check_value(ab_scene_reader *r, const ab_node *node, const char *where, ab_monitor_spec *monitor) {
     const ab_scene *scene = r->scene;
-    const ab_words *words = monitor->body >= 0 ? &ab_words_body_values : monitor->contact >= 0 ? &ab_words_contact_values : &ab_words_scene_values;
+    const ab_words *words = monitor->body >= 0      ? &ab_words_body_values
+                            : monitor->contact >= 0 ? &ab_words_contact_values
+                                                    : &ab_words_scene_values;
     char path[AB_WHERE], tail[AB_TAIL];
     const char *text = ab_scene_word(r, node, ab_where_join(path, where, "value"), "one word such as position.x"), *names[MOST_WORDS];
     if (text == NULL) return;
@@ -54,10 +59,13 @@ static void check_value(ab_scene_reader *r, const ab_node *node, const char *whe
     for (size_t b = 0; b < scene->body_count; b++) {
         if (monitor->body != (int)b || scene->bodies[b].material >= scene->material_count) continue;
         const ab_loaded_class *model = scene->materials[scene->bodies[b].material].loaded;
-        for (uint32_t s = 0; model != NULL && s < model->class_.nstate && count < MOST_WORDS; s++) names[count++] = model->class_.state[s].name;
+        for (uint32_t s = 0; model != NULL && s < model->class_.nstate && count < MOST_WORDS; s++)
+            names[count++] = model->class_.state[s].name;
     }
     ab_report_error(r->base.report, node->mark, "%s: unknown value '%.64s' of %s%s", path, text,
-                    monitor->body >= 0 ? "a body" : monitor->contact >= 0 ? "a contact" : "the scene (name a body or a contact for theirs)",
+                    monitor->body >= 0      ? "a body"
+                    : monitor->contact >= 0 ? "a contact"
+                                            : "the scene (name a body or a contact for theirs)",
                     ab_suggest_tail(text, names, count, tail, sizeof tail));
 }
 
@@ -91,8 +99,12 @@ static bool take_subject(ab_scene_reader *r, const ab_node *const *v, const char
     if (v[MONITOR_CONTACT] == NULL) return true;
     if (!ab_read_integer(&r->base, &ab_section_monitor.keys[MONITOR_CONTACT], v[MONITOR_CONTACT], where, &contact)) return false;
     if (contact < 0 || contact >= (long)r->scene->contact_count) {
-        if (r->scene->contact_count == 0) ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld, the scene has none", where, contact);
-        else ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld; they count from 0 to %zu", where, contact, r->scene->contact_count - 1);
+        if (r->scene->contact_count == 0)
+            ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld, the scene has none", where,
+                            contact);
+        else
+            ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld; they count from 0 to %zu",
+                            where, contact, r->scene->contact_count - 1);
         return false;
     }
     monitor->contact = (int)contact;
@@ -102,34 +114,41 @@ static bool take_subject(ab_scene_reader *r, const ab_node *const *v, const char
 static void take_places(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_monitor_spec *monitor) {
     char path[AB_WHERE];
     const ab_scene *scene = r->scene;
-    const bool of_points = monitor->body >= 0 && monitor->value != NULL && (ab_value_is_of_points(monitor->value) || is_state(scene, (size_t)monitor->body, monitor->value));
+    const bool of_points = monitor->body >= 0 && monitor->value != NULL &&
+                           (ab_value_is_of_points(monitor->value) || is_state(scene, (size_t)monitor->body, monitor->value));
     static const int place_keys[] = {MONITOR_AT, MONITOR_OVER, MONITOR_WHERE};
     for (int i = 0; i < 3; i++) {
         const ab_node *node = v[place_keys[i]];
         if (node != NULL && !of_points)
-            ab_report_error(r->base.report, node->mark, "%s.%s has no meaning for '%s', which does not belong to single points; leave it out", where, ab_section_monitor.keys[place_keys[i]].name,
-                            monitor->value == NULL ? "" : monitor->value);
+            ab_report_error(r->base.report, node->mark,
+                            "%s.%s has no meaning for '%s', which does not belong to single points; leave it out", where,
+                            ab_section_monitor.keys[place_keys[i]].name, monitor->value == NULL ? "" : monitor->value);
     }
     if (!of_points) return;
     if (v[MONITOR_AT] != NULL) {
         for (int i = 1; i < 3; i++)
             if (v[place_keys[i]] != NULL)
-                ab_report_error(r->base.report, v[place_keys[i]]->mark, "%s: at names one point, so %s has no meaning; keep one", where, ab_section_monitor.keys[place_keys[i]].name);
+                ab_report_error(r->base.report, v[place_keys[i]]->mark, "%s: at names one point, so %s has no meaning; keep one", where,
+                                ab_section_monitor.keys[place_keys[i]].name);
         monitor->has_at = ab_read_point(&r->base, &ab_section_monitor.keys[MONITOR_AT], v[MONITOR_AT], where, monitor->at);
         double low[2], high[2];
         const ab_body_spec *body = &scene->bodies[monitor->body];
         if (monitor->has_at && ab_shape_bounds(&body->shape, low, high))
             for (int d = 0; d < 2; d++)
                 if (monitor->at[d] < low[d] - scene->grid_cell || monitor->at[d] > high[d] + scene->grid_cell) {
-                    ab_report_warning(r->base.report, v[MONITOR_AT]->mark, "%s: [%g, %g] lies outside body '%s'; its nearest point is taken", ab_where_join(path, where, "at"), monitor->at[0],
-                                      monitor->at[1], body->name);
+                    ab_report_warning(r->base.report, v[MONITOR_AT]->mark,
+                                      "%s: [%g, %g] lies outside body '%s'; its nearest point is taken", ab_where_join(path, where, "at"),
+                                      monitor->at[0], monitor->at[1], body->name);
                     break;
                 }
         return;
     }
-    if (v[MONITOR_WHERE] != NULL) monitor->has_where = ab_scene_take_where(r, v[MONITOR_WHERE], ab_where_join(path, where, "where"), &monitor->where);
-    if (v[MONITOR_OVER] != NULL) ab_read_word(&r->base, &ab_section_monitor.keys[MONITOR_OVER], v[MONITOR_OVER], where, &monitor->over);
-    else if (strcmp(monitor->value, "mass") != 0 && strcmp(monitor->value, "volume") != 0) monitor->over = ab_reader_text(&r->base, "mass");
+    if (v[MONITOR_WHERE] != NULL)
+        monitor->has_where = ab_scene_take_where(r, v[MONITOR_WHERE], ab_where_join(path, where, "where"), &monitor->where);
+    if (v[MONITOR_OVER] != NULL)
+        ab_read_word(&r->base, &ab_section_monitor.keys[MONITOR_OVER], v[MONITOR_OVER], where, &monitor->over);
+    else if (strcmp(monitor->value, "mass") != 0 && strcmp(monitor->value, "volume") != 0)
+        monitor->over = ab_reader_text(&r->base, "mass");
 }
 
 static void take_monitor(ab_scene_reader *r, const ab_node *node, const char *where, ab_monitor_spec *monitor) {
@@ -151,7 +170,8 @@ void ab_scene_take_monitors(ab_scene_reader *r, const ab_node *node) {
     scene->monitors = ab_reader_take(&r->base, node->count, sizeof *scene->monitors);
     if (scene->monitors == NULL) return;
     scene->monitor_count = node->count;
-    for (size_t i = 0; i < node->count; i++) scene->monitors[i] = (ab_monitor_spec){.mark = node->items[i]->mark, .body = -1, .contact = -1, .where = {.side = -1}};
+    for (size_t i = 0; i < node->count; i++)
+        scene->monitors[i] = (ab_monitor_spec){.mark = node->items[i]->mark, .body = -1, .contact = -1, .where = {.side = -1}};
     for (size_t i = 0; i < node->count; i++) {
         char where[AB_WHERE];
         snprintf(where, sizeof where, "monitors[%zu]", i);
@@ -190,7 +210,8 @@ static const char *take_column(ab_scene_reader *r, const ab_node *node, const ch
             ab_report_error(r->base.report, node->mark, "%s: '%s' is a monitor; write monitor: %s", path, text, text);
             return NULL;
         }
-    ab_report_error(r->base.report, node->mark, "%s: unknown column '%.64s'%s", path, last, ab_suggest_tail(last, names, count, tail, sizeof tail));
+    ab_report_error(r->base.report, node->mark, "%s: unknown column '%.64s'%s", path, last,
+                    ab_suggest_tail(last, names, count, tail, sizeof tail));
     return NULL;
 }
 
@@ -208,7 +229,8 @@ static const char *take_monitor_of(ab_scene_reader *r, const ab_node *node, cons
             return value_unit(scene, &scene->monitors[m]);
         }
     }
-    ab_report_error(r->base.report, node->mark, "%s: there is no monitor '%.64s'%s", path, text, ab_suggest_tail(text, names, count, tail, sizeof tail));
+    ab_report_error(r->base.report, node->mark, "%s: there is no monitor '%.64s'%s", path, text,
+                    ab_suggest_tail(text, names, count, tail, sizeof tail));
     return NULL;
 }
 
@@ -233,12 +255,16 @@ static bool take_window(ab_scene_reader *r, const ab_node *const *v, const char 
     const bool empty = end > 0 && v[EXPECT_FROM] != NULL && !(expect->from < expect->to);
     const ab_node *edge = late ? v[EXPECT_TO] : v[EXPECT_FROM];
     if (r->end_by_set && (late || (empty && expect->from >= end)) && !edge->override_) {
-        ab_report_warning(r->base.report, edge->mark, "%s is left out: its window reaches to %.10g s, but --set ends the run at %.10g s", where, fmax(expect->from, expect->to), end);
+        ab_report_warning(r->base.report, edge->mark, "%s is left out: its window reaches to %.10g s, but --set ends the run at %.10g s",
+                          where, fmax(expect->from, expect->to), end);
         return false;
     }
     if (late)
-        ab_report_error(r->base.report, v[EXPECT_TO]->mark, "%s.to: %.10g s is after the end of the run at %.10g s", where, expect->to, end);
-    if (empty) ab_report_error(r->base.report, v[EXPECT_FROM]->mark, "%s: the window from %.10g to %.10g s is empty", where, expect->from, expect->to);
+        ab_report_error(r->base.report, v[EXPECT_TO]->mark, "%s.to: %.10g s is after the end of the run at %.10g s", where, expect->to,
+                        end);
+    if (empty)
+        ab_report_error(r->base.report, v[EXPECT_FROM]->mark, "%s: the window from %.10g to %.10g s is empty", where, expect->from,
+                        expect->to);
     return true;
 }
 
@@ -251,9 +277,11 @@ static bool take_expect(ab_scene_reader *r, const ab_node *node, const char *whe
     if (v[EXPECT_NAME] != NULL) ab_read_text(&r->base, &key[EXPECT_NAME], v[EXPECT_NAME], where, &expect->name);
     const char *unit = NULL;
     if ((v[EXPECT_MONITOR] != NULL) == (v[EXPECT_COLUMN] != NULL)) {
-        ab_report_error(r->base.report, node->mark, "%s needs one of monitor and column%s", where, v[EXPECT_MONITOR] != NULL ? ", not both" : "");
+        ab_report_error(r->base.report, node->mark, "%s needs one of monitor and column%s", where,
+                        v[EXPECT_MONITOR] != NULL ? ", not both" : "");
     } else {
-        unit = v[EXPECT_MONITOR] != NULL ? take_monitor_of(r, v[EXPECT_MONITOR], where, expect) : take_column(r, v[EXPECT_COLUMN], where, expect);
+        unit = v[EXPECT_MONITOR] != NULL ? take_monitor_of(r, v[EXPECT_MONITOR], where, expect)
+                                         : take_column(r, v[EXPECT_COLUMN], where, expect);
     }
     char buffer[UNIT];
     const bool normed = ab_read_word(&r->base, &key[EXPECT_NORM], v[EXPECT_NORM], where, &expect->norm);
@@ -267,7 +295,8 @@ static bool take_expect(ab_scene_reader *r, const ab_node *node, const char *whe
     const bool kept = take_window(r, v, where, expect);
     if (!normed) return kept;
     if (ab_norm_needs_level(expect->norm) && v[EXPECT_LEVEL] == NULL)
-        ab_report_error(r->base.report, node->mark, "key 'level' is missing in %s: norm %s needs the value that is to be exceeded", where, expect->norm);
+        ab_report_error(r->base.report, node->mark, "key 'level' is missing in %s: norm %s needs the value that is to be exceeded", where,
+                        expect->norm);
     if (!ab_norm_needs_level(expect->norm) && v[EXPECT_LEVEL] != NULL)
         ab_report_error(r->base.report, v[EXPECT_LEVEL]->mark, "%s.level has no meaning for norm %s; leave it out", where, expect->norm);
     return kept;

@@ -7,16 +7,19 @@
 
 static const char *type_name(const ab_key *key) {
     switch (key->type) {
-        case AB_KEY_NUMBER: return "number";
-        case AB_KEY_INTEGER: return "whole number";
-        case AB_KEY_FLAG: return "true, false";
-        case AB_KEY_WORD: return "word";
-        case AB_KEY_NAME: return "name";
-        case AB_KEY_TEXT: return "text";
-        case AB_KEY_POINT: return "[x, y]";
-        case AB_KEY_FORMULA: return "formula of t";
-        case AB_KEY_VECTOR: return key->variables == AB_VARIABLE_T ? "[x, y], formulas of t" : key->variables == AB_VARIABLES_XY ? "[x, y], formulas of x, y" : "[x, y]";
-        default: return "mapping or list";
+    case AB_KEY_NUMBER: return "number";
+    case AB_KEY_INTEGER: return "whole number";
+    case AB_KEY_FLAG: return "true, false";
+    case AB_KEY_WORD: return "word";
+    case AB_KEY_NAME: return "name";
+    case AB_KEY_TEXT: return "text";
+    case AB_KEY_POINT: return "[x, y]";
+    case AB_KEY_FORMULA: return "formula of t";
+    case AB_KEY_VECTOR:
+        return key->variables == AB_VARIABLE_T     ? "[x, y], formulas of t"
+               : key->variables == AB_VARIABLES_XY ? "[x, y], formulas of x, y"
+                                                   : "[x, y]";
+    default: return "mapping or list";
     }
 }
 
@@ -45,11 +48,15 @@ static void write_range(FILE *stream, const ab_key *key) {
 
 static void write_key(FILE *stream, const ab_key *key) {
     fprintf(stream, "| `%s` | ", key->name);
-    if (key->type == AB_KEY_WORD) write_words(stream, key->words);
-    else fprintf(stream, "%s", type_name(key));
+    if (key->type == AB_KEY_WORD)
+        write_words(stream, key->words);
+    else
+        fprintf(stream, "%s", type_name(key));
     fprintf(stream, " | %s | ", key->unit == NULL || strcmp(key->unit, "1") == 0 ? "" : key->unit);
-    if (key->flags & AB_KEY_REQUIRED) fprintf(stream, "required");
-    else if (key->initial != NULL && key->initial[0] != '\0') fprintf(stream, "%s", key->initial);
+    if (key->flags & AB_KEY_REQUIRED)
+        fprintf(stream, "required");
+    else if (key->initial != NULL && key->initial[0] != '\0')
+        fprintf(stream, "%s", key->initial);
     fprintf(stream, " | ");
     write_range(stream, key);
     fprintf(stream, " | %s |\n", key->help);
@@ -106,27 +113,40 @@ static const char opening[] =
     "\n"
     "## Numbers\n"
     "\n"
-    "- A bare number is in SI: `1800`, `5e-4`, `.5`. Forms that programs read differently are refused: `0x10`, `1_000`, `010`, `inf`, `nan`.\n"
-    "- A number with a unit is converted: `\"20 MPa\"`, `\"10 mm\"`, `\"1800 kg m-3\"`, `\"30 deg\"`. A unit of another dimension is an error. Units are those of UDUNITS-2.\n"
-    "- An expression of `constants`, `pi` and `e`: `2*mu`, `\"a > 1 ? b : c\"`; quotes where YAML needs them. Functions: sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh\n"
-    "  atan2 log2 log10 log (natural) ln exp sqrt sign rint abs sum avg min max. `^` is the power; comparison, `&&`, `||` and `c ? a : b` as in C. An angle in an expression is in radians.\n"
-    "- A formula may use `t` (s), or `x` and `y` (m), where the tables say so. A unit may follow an expression or a formula: `\"2*p MPa\"`.\n"
+    "- A bare number is in SI: `1800`, `5e-4`, `.5`. Forms that programs read differently are refused: `0x10`, `1_000`, `010`, `inf`, "
+    "`nan`.\n"
+    "- A number with a unit is converted: `\"20 MPa\"`, `\"10 mm\"`, `\"1800 kg m-3\"`, `\"30 deg\"`. A unit of another dimension is an "
+    "error. Units are those of UDUNITS-2.\n"
+    "- An expression of `constants`, `pi` and `e`: `2*mu`, `\"a > 1 ? b : c\"`; quotes where YAML needs them. Functions: sin cos tan asin "
+    "acos atan sinh cosh tanh asinh acosh atanh\n"
+    "  atan2 log2 log10 log (natural) ln exp sqrt sign rint abs sum avg min max. `^` is the power; comparison, `&&`, `||` and `c ? a : b` "
+    "as in C. An angle in an expression is in radians.\n"
+    "- A formula may use `t` (s), or `x` and `y` (m), where the tables say so. A unit may follow an expression or a formula: `\"2*p "
+    "MPa\"`.\n"
     "- `constants` may use those written above them. Their names must not be those of variables or functions.\n"
-    "- Anchors and aliases of YAML work; merge keys (`<<`) and tags do not. A file has at most 16 MiB, 64 levels and 500000 values with its aliases written out.\n"
+    "- Anchors and aliases of YAML work; merge keys (`<<`) and tags do not. A file has at most 16 MiB, 64 levels and 500000 values with "
+    "its aliases written out.\n"
     "\n"
     "## --set\n"
     "\n"
-    "`--set PATH=VALUE` changes one value before anything is checked: `--set constants.mu=0.2`, `--set contact[0].friction=0.1`, `--set bodies.block.fill.per_cell=16`,\n"
+    "`--set PATH=VALUE` changes one value before anything is checked: `--set constants.mu=0.2`, `--set contact[0].friction=0.1`, `--set "
+    "bodies.block.fill.per_cell=16`,\n"
     "`--set 'grid.sides={bottom: roller}'`. VALUE is YAML. A key that the file does not have is added; a body or a material is not.\n";
 
 void ab_scene_write_reference(FILE *stream) {
     fputs(opening, stream);
     for (size_t i = 0; ab_sections[i] != NULL; i++) write_section(stream, ab_sections[i]);
-    write_words_table(stream, "Monitor values of a body", "`body: NAME`. Besides, a state that the body's material declares, by name (`plastic_strain`, `back_stress.xy`).", &ab_words_body_values, true);
+    write_words_table(stream, "Monitor values of a body",
+                      "`body: NAME`. Besides, a state that the body's material declares, by name (`plastic_strain`, `back_stress.xy`).",
+                      &ab_words_body_values, true);
     write_words_table(stream, "Monitor values of a contact", "`contact: i`.", &ab_words_contact_values, true);
     write_words_table(stream, "Monitor values of the scene", "Without body and contact.", &ab_words_scene_values, true);
-    write_words_table(stream, "over", "How the points of a body become one number. `mass` and `volume` are the body's own without it.", &ab_words_over, false);
-    write_words_table(stream, "norm", "The window is `from` to `to`. The error is divided by `scale`, or by the reference's own size.", &ab_words_norms, false);
-    write_words_table(stream, "Columns of history.csv", "Also of one body, as `block.kinetic`, but for t, step, dt and remainder.", &ab_words_columns, true);
-    write_words_table(stream, "Output fields", "`position` is always there. Besides, the states that materials declare, by name.", &ab_words_fields, true);
+    write_words_table(stream, "over", "How the points of a body become one number. `mass` and `volume` are the body's own without it.",
+                      &ab_words_over, false);
+    write_words_table(stream, "norm", "The window is `from` to `to`. The error is divided by `scale`, or by the reference's own size.",
+                      &ab_words_norms, false);
+    write_words_table(stream, "Columns of history.csv", "Also of one body, as `block.kinetic`, but for t, step, dt and remainder.",
+                      &ab_words_columns, true);
+    write_words_table(stream, "Output fields", "`position` is always there. Besides, the states that materials declare, by name.",
+                      &ab_words_fields, true);
 }

@@ -39,8 +39,8 @@ void ab_scene_take_constants(ab_scene_reader *r, const ab_node *node) {
             const char *names[AB_DOCUMENT_KEYS];
             for (size_t k = 0; k < i; k++) names[k] = node->entries[k].key;
             char tail[AB_TAIL];
-            ab_report_warning(r->base.report, entry->mark, "constants.%.64s is not in the file; only another --set can use it%s", entry->key,
-                              ab_suggest_tail(entry->key, names, i, tail, sizeof tail));
+            ab_report_warning(r->base.report, entry->mark, "constants.%.64s is not in the file; only another --set can use it%s",
+                              entry->key, ab_suggest_tail(entry->key, names, i, tail, sizeof tail));
         }
         take_constant(r, entry);
     }
@@ -63,7 +63,8 @@ void ab_scene_take_time(ab_scene_reader *r, const ab_node *node) {
     const ab_key *key = ab_section_time.keys;
     if (v[TIME_DT] != NULL && v[TIME_CFL] != NULL) {
         if (v[TIME_DT]->override_ == v[TIME_CFL]->override_)
-            ab_report_error(r->base.report, v[TIME_CFL]->mark, "time has both dt and cfl; keep one: dt is a fixed step, cfl a part of the critical one");
+            ab_report_error(r->base.report, v[TIME_CFL]->mark,
+                            "time has both dt and cfl; keep one: dt is a fixed step, cfl a part of the critical one");
         else /* what --set says takes the place of the other */
             v[v[TIME_DT]->override_ ? TIME_CFL : TIME_DT] = NULL;
     }
@@ -73,12 +74,15 @@ void ab_scene_take_time(ab_scene_reader *r, const ab_node *node) {
         scene->time_cfl = 0;
         ab_read_number(&r->base, &key[TIME_DT], v[TIME_DT], "time", &scene->time_dt);
         if (scene->time_end > 0 && scene->time_dt > scene->time_end)
-            ab_report_warning(r->base.report, v[TIME_DT]->mark, "time.dt %g s is longer than the whole run of %g s", scene->time_dt, scene->time_end);
+            ab_report_warning(r->base.report, v[TIME_DT]->mark, "time.dt %g s is longer than the whole run of %g s", scene->time_dt,
+                              scene->time_end);
         if (scene->time_dt > 0 && scene->time_end / scene->time_dt > 1e12)
-            ab_report_error(r->base.report, v[TIME_DT]->mark, "time.dt: %g s up to %g s would take %.3g steps", scene->time_dt, scene->time_end, scene->time_end / scene->time_dt);
+            ab_report_error(r->base.report, v[TIME_DT]->mark, "time.dt: %g s up to %g s would take %.3g steps", scene->time_dt,
+                            scene->time_end, scene->time_end / scene->time_dt);
     } else {
         ab_read_number(&r->base, &key[TIME_CFL], v[TIME_CFL], "time", &scene->time_cfl);
-        if (scene->time_cfl > 1) ab_report_warning(r->base.report, v[TIME_CFL]->mark, "time.cfl %g is above 1, the limit of stability", scene->time_cfl);
+        if (scene->time_cfl > 1)
+            ab_report_warning(r->base.report, v[TIME_CFL]->mark, "time.cfl %g is above 1, the limit of stability", scene->time_cfl);
     }
 }
 
@@ -93,7 +97,9 @@ enum { MOST_FIELDS = 64 };
 
 static bool field_known(ab_scene_reader *r, const ab_node *node, const char *where) {
     enum { MOST = 256 };
-    if (ab_words_find(&ab_words_fields, node->text) != NULL || strcmp(node->text, "position") == 0 || ab_scene_state_named(r->scene, SIZE_MAX, node->text) != NULL) return true;
+    if (ab_words_find(&ab_words_fields, node->text) != NULL || strcmp(node->text, "position") == 0 ||
+        ab_scene_state_named(r->scene, SIZE_MAX, node->text) != NULL)
+        return true;
     const char *names[MOST];
     size_t count = 0;
     for (size_t i = 0; i < ab_words_fields.count; i++) names[count++] = ab_words_fields.word[i].name;
@@ -102,7 +108,8 @@ static bool field_known(ab_scene_reader *r, const ab_node *node, const char *whe
         for (uint32_t s = 0; model != NULL && s < model->class_.nstate && count < MOST; s++) names[count++] = model->class_.state[s].name;
     }
     char tail[AB_TAIL];
-    ab_report_error(r->base.report, node->mark, "%s: unknown field '%.64s'%s", where, node->text, ab_suggest_tail(node->text, names, count, tail, sizeof tail));
+    ab_report_error(r->base.report, node->mark, "%s: unknown field '%.64s'%s", where, node->text,
+                    ab_suggest_tail(node->text, names, count, tail, sizeof tail));
     return false;
 }
 

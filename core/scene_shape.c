@@ -21,8 +21,9 @@ static bool take_box(ab_scene_reader *r, const ab_node *node, const char *where,
     if (!low || !high) return false;
     for (int d = 0; d < 2; d++)
         if (!(shape->low[d] < shape->high[d])) {
-            ab_report_error(r->base.report, node->mark, "%s: the second corner must lie above and to the right of the first; along %c it goes from %.10g to %.10g", path,
-                            d == 0 ? 'x' : 'y', shape->low[d], shape->high[d]);
+            ab_report_error(r->base.report, node->mark,
+                            "%s: the second corner must lie above and to the right of the first; along %c it goes from %.10g to %.10g",
+                            path, d == 0 ? 'x' : 'y', shape->low[d], shape->high[d]);
             return false;
         }
     return true;
@@ -39,13 +40,16 @@ static bool take_round(ab_scene_reader *r, const ab_section *section, const ab_n
     if (section->count <= ROUND_INNER) return center && radius;
     const bool inner = ab_read_number(&r->base, &key[ROUND_INNER], v[ROUND_INNER], path, &shape->inner);
     if (radius && inner && !(shape->inner < shape->radius)) {
-        ab_report_error(r->base.report, v[ROUND_INNER]->mark, "%s: inner radius %.10g m is not less than radius %.10g m", path, shape->inner, shape->radius);
+        ab_report_error(r->base.report, v[ROUND_INNER]->mark, "%s: inner radius %.10g m is not less than radius %.10g m", path,
+                        shape->inner, shape->radius);
         return false;
     }
     return center && radius && inner;
 }
 
-static double turn(const double a[2], const double b[2], const double c[2]) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
+static double turn(const double a[2], const double b[2], const double c[2]) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
 
 static bool between(const double a[2], const double b[2], const double p[2]) { /* p on the line through a and b: within the piece? */
     return fmin(a[0], b[0]) <= p[0] && p[0] <= fmax(a[0], b[0]) && fmin(a[1], b[1]) <= p[1] && p[1] <= fmax(a[1], b[1]);
@@ -53,8 +57,10 @@ static bool between(const double a[2], const double b[2], const double p[2]) { /
 
 static bool meet(const double a[2], const double b[2], const double c[2], const double d[2]) {
     const double c_side = turn(a, b, c), d_side = turn(a, b, d), a_side = turn(c, d, a), b_side = turn(c, d, b);
-    if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) && ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0))) return true;
-    return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) || (a_side == 0 && between(c, d, a)) || (b_side == 0 && between(c, d, b));
+    if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) && ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0)))
+        return true;
+    return (c_side == 0 && between(a, b, c)) || (d_side == 0 && between(a, b, d)) || (a_side == 0 && between(c, d, a)) ||
+           (b_side == 0 && between(c, d, b));
 }
 
 /* Pieces that are not neighbours may not meet; neighbours may not fold back on each other. */
@@ -66,9 +72,12 @@ static bool crosses_itself(const ab_shape_spec *shape, size_t *first, size_t *se
             const double *c = shape->vertices[j], *d = shape->vertices[(j + 1) % n];
             const bool next = j == i + 1, previous = (j + 1) % n == i;
             bool bad;
-            if (next) bad = turn(a, b, d) == 0 && (b[0] - a[0]) * (d[0] - b[0]) + (b[1] - a[1]) * (d[1] - b[1]) < 0;
-            else if (previous) bad = turn(c, d, b) == 0 && (d[0] - c[0]) * (b[0] - d[0]) + (d[1] - c[1]) * (b[1] - d[1]) < 0;
-            else bad = meet(a, b, c, d);
+            if (next)
+                bad = turn(a, b, d) == 0 && (b[0] - a[0]) * (d[0] - b[0]) + (b[1] - a[1]) * (d[1] - b[1]) < 0;
+            else if (previous)
+                bad = turn(c, d, b) == 0 && (d[0] - c[0]) * (b[0] - d[0]) + (d[1] - c[1]) * (b[1] - d[1]) < 0;
+            else
+                bad = meet(a, b, c, d);
             if (bad) {
                 *first = i;
                 *second = j;
@@ -83,7 +92,8 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
     const ab_key corner = {"polygon", AB_KEY_POINT, .unit = "m", .help = ""};
     char path[AB_WHERE];
     ab_where_join(path, where, "polygon");
-    if (node->kind != AB_NODE_LIST || node->count < 3) return refuse(r, node->mark, path, "needs a list of three corners or more [[x, y], [x, y], [x, y], ...]");
+    if (node->kind != AB_NODE_LIST || node->count < 3)
+        return refuse(r, node->mark, path, "needs a list of three corners or more [[x, y], [x, y], [x, y], ...]");
     if (node->count > MOST_CORNERS) {
         ab_report_error(r->base.report, node->mark, "%s has %zu corners, more than %d", path, node->count, MOST_CORNERS);
         return false;
@@ -94,7 +104,8 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
     for (size_t i = 0; i < node->count; i++) good = ab_read_point(&r->base, &corner, node->items[i], where, shape->vertices[i]) && good;
     if (!good) return false;
     size_t count = node->count;
-    if (count > 3 && memcmp(shape->vertices[0], shape->vertices[count - 1], sizeof shape->vertices[0]) == 0) count--; /* closed by repeating the first corner */
+    if (count > 3 && memcmp(shape->vertices[0], shape->vertices[count - 1], sizeof shape->vertices[0]) == 0)
+        count--; /* closed by repeating the first corner */
     shape->count = count;
     double area = 0;
     for (size_t i = 0; i < count; i++) {
@@ -103,11 +114,13 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
             ab_report_error(r->base.report, node->items[i]->mark, "%s: corner %zu stands twice", path, i);
             return false;
         }
-        area += 0.5 * ((a[0] - shape->vertices[0][0]) * (b[1] - shape->vertices[0][1]) - (b[0] - shape->vertices[0][0]) * (a[1] - shape->vertices[0][1]));
+        area += 0.5 * ((a[0] - shape->vertices[0][0]) * (b[1] - shape->vertices[0][1]) -
+                       (b[0] - shape->vertices[0][0]) * (a[1] - shape->vertices[0][1]));
     }
     size_t first, second;
     if (crosses_itself(shape, &first, &second)) {
-        ab_report_error(r->base.report, node->mark, "%s: the outline meets itself: the piece from corner %zu and the piece from corner %zu", path, first, second);
+        ab_report_error(r->base.report, node->mark, "%s: the outline meets itself: the piece from corner %zu and the piece from corner %zu",
+                        path, first, second);
         return false;
     }
     if (area == 0) return refuse(r, node->mark, path, "the corners lie on one line");
@@ -144,7 +157,8 @@ bool ab_scene_take_shape(ab_scene_reader *r, const ab_node *node, const char *wh
     size_t given = 0;
     for (int k = 0; k < SHAPE_KEYS; k++) given += v[k] != NULL;
     if (given != 1) {
-        if (node->count == 0 || given > 1) refuse(r, node->mark, where, "one of box, disc, ring, polygon and union is needed; several shapes are {union: [{...}, {...}]}");
+        if (node->count == 0 || given > 1)
+            refuse(r, node->mark, where, "one of box, disc, ring, polygon and union is needed; several shapes are {union: [{...}, {...}]}");
         return false;
     }
     bool good = false;
@@ -208,7 +222,8 @@ static bool take_range(ab_scene_reader *r, const ab_node *node, const ab_key *ke
     }
     if (!ab_read_point(&r->base, key, node, where, range)) return false;
     if (range[0] <= range[1]) return true;
-    ab_report_error(r->base.report, node->mark, "%s: the range goes from %.10g down to %.10g; write the smaller one first", ab_where_join(path, where, key->name), range[0], range[1]);
+    ab_report_error(r->base.report, node->mark, "%s: the range goes from %.10g down to %.10g; write the smaller one first",
+                    ab_where_join(path, where, key->name), range[0], range[1]);
     return false;
 }
 

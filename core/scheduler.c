@@ -22,38 +22,37 @@ static void on_signal(int number) { stop_signal = number; }
 /* Ways a run may be asked to end: each closes its files first. Writing past a file-size limit is an error of the write, not a death. */
 enum { ENDINGS = 3 };
 static const int ENDING[ENDINGS] = {SIGINT, SIGTERM, SIGHUP};
-typedef struct signal_keeper { struct sigaction ending[ENDINGS], size; } signal_keeper;
+typedef struct signal_keeper {
+    struct sigaction ending[ENDINGS], size;
+} signal_keeper;
 
-static void catch_signals(signal_keeper *old)
-{
+static void catch_signals(signal_keeper *old) {
     const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
     stop_signal = 0;
     for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &action, &old->ending[k]);
     sigaction(SIGXFSZ, &ignore, &old->size);
 }
 
-static void release_signals(const signal_keeper *old)
-{
+static void release_signals(const signal_keeper *old) {
     for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &old->ending[k], NULL);
     sigaction(SIGXFSZ, &old->size, NULL);
 }
 
-static double seconds(clockid_t clock)
-{
+static double seconds(clockid_t clock) {
     struct timespec t;
     clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 enum { PHASE_BEGIN, PHASE_CONTACT, PHASE_FINISH, PHASE_REMAP, PHASE_STRESS, PHASE_RESULTS, PHASES };
-static const char *const PHASE_NAMES[PHASES] = {"nodes from points", "contact", "points from nodes", "nodes again", "stress and points to nodes", "results"};
+static const char *const PHASE_NAMES[PHASES] = {"nodes from points",          "contact", "points from nodes", "nodes again",
+                                                "stress and points to nodes", "results"};
 
 static double choose_dt(ab_schedule *s);
 
 /* ---- making and unmaking ------------------------------------------------------------------------------------------------ */
 
-ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *options, ab_schedule **out, ab_report *report)
-{
+ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *options, ab_schedule **out, ab_report *report) {
     ab_schedule *s = calloc(1, sizeof *s);
     if (!s) return ab_report_failure(report, "no memory for the schedule");
     s->scene = scene;
@@ -64,14 +63,18 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     s->motion = calloc(s->body_count + 1, sizeof *s->motion);
     s->limit = "";
     omp_set_num_threads(options->threads);
-    ab_status status = s->domains && s->energy && s->energy_start && s->motion ? AB_OK : ab_report_failure(report, "no memory for %zu bodies", s->body_count);
+    ab_status status = s->domains && s->energy && s->energy_start && s->motion
+                           ? AB_OK
+                           : ab_report_failure(report, "no memory for %zu bodies", s->body_count);
     for (size_t b = 0; status == AB_OK && b < s->body_count; ++b) {
         const ab_body_spec *spec = scene->bodies + b;
         const ab_method *method = NULL;
         for (size_t m = 0; m < options->method_count; ++m)
             if (!strcmp(options->methods[m].name, spec->method)) method = options->methods + m;
-        if (!method) status = ab_report_error(report, spec->mark, "body '%s': method '%s' is not in this version", spec->name, spec->method);
-        else status = method->create(scene, b, options->threads, s->domains + b, report);
+        if (!method)
+            status = ab_report_error(report, spec->mark, "body '%s': method '%s' is not in this version", spec->name, spec->method);
+        else
+            status = method->create(scene, b, options->threads, s->domains + b, report);
     }
     if (status == AB_OK && scene->contact_count) status = options->interact(scene, s->domains, &s->interaction, report);
     if (status != AB_OK) {
@@ -85,14 +88,14 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     if (scene->time_end / s->dt > MOST_STEPS) {
         const double dt = s->dt;
         ab_schedule_destroy(s);
-        return ab_report_error(report, scene->mark_time, "time.end: steps of about %.3g s up to %g s would be %.3g, more than %g", dt, scene->time_end, scene->time_end / dt, MOST_STEPS);
+        return ab_report_error(report, scene->mark_time, "time.end: steps of about %.3g s up to %g s would be %.3g, more than %g", dt,
+                               scene->time_end, scene->time_end / dt, MOST_STEPS);
     }
     *out = s;
     return AB_OK;
 }
 
-void ab_schedule_destroy(ab_schedule *s)
-{
+void ab_schedule_destroy(ab_schedule *s) {
     if (!s) return;
     if (s->interaction) s->interaction->destroy(s->interaction);
     for (size_t b = 0; s->domains && b < s->body_count; ++b)
@@ -102,28 +105,28 @@ void ab_schedule_destroy(ab_schedule *s)
 
 /* ---- one step ------------------------------------------------------------------------------------------------------------ */
 
-static double sum_of(const ab_energy *e)
-{
-    return e->kinetic + e->strain + e->potential + e->plastic + e->friction + e->contact + e->boundary + e->damping + e->outflow - e->external;
+static double sum_of(const ab_energy *e) {
+    return e->kinetic + e->strain + e->potential + e->plastic + e->friction + e->contact + e->boundary + e->damping + e->outflow -
+           e->external;
 }
 
-void ab_schedule_look(ab_schedule *s)
-{
+void ab_schedule_look(ab_schedule *s) {
     ab_energy total = {0};
     for (size_t b = 0; b < s->body_count; ++b) {
         ab_energy *e = s->energy + b;
         s->domains[b]->ops->ledger(s->domains[b], e, s->motion + b);
         if (s->interaction) s->interaction->book(s->interaction, b, &e->friction, &e->contact);
-        total.kinetic += e->kinetic, total.strain += e->strain, total.potential += e->potential, total.plastic += e->plastic, total.friction += e->friction;
-        total.contact += e->contact, total.boundary += e->boundary, total.damping += e->damping, total.external += e->external, total.outflow += e->outflow;
+        total.kinetic += e->kinetic, total.strain += e->strain, total.potential += e->potential, total.plastic += e->plastic,
+            total.friction += e->friction;
+        total.contact += e->contact, total.boundary += e->boundary, total.damping += e->damping, total.external += e->external,
+            total.outflow += e->outflow;
     }
     s->total = total;
     s->total_now = sum_of(&total);
 }
 
 /* dt of the next step: the scene's own, or by cfl so that the steps left are equal and end on time. *limit: what binds. */
-static double choose_dt(ab_schedule *s)
-{
+static double choose_dt(ab_schedule *s) {
     const ab_scene *scene = s->scene;
     const double left = scene->time_end - s->time;
     double critical = INFINITY;
@@ -143,15 +146,14 @@ static double choose_dt(ab_schedule *s)
 }
 
 /* Times every call of a phase. */
-#define TIMED(phase, statement)                                  \
-    do {                                                         \
-        const double begin_ = seconds(CLOCK_MONOTONIC);          \
-        statement;                                               \
-        s->phase_seconds[phase] += seconds(CLOCK_MONOTONIC) - begin_; \
+#define TIMED(phase, statement)                                                                                                            \
+    do {                                                                                                                                   \
+        const double begin_ = seconds(CLOCK_MONOTONIC);                                                                                    \
+        statement;                                                                                                                         \
+        s->phase_seconds[phase] += seconds(CLOCK_MONOTONIC) - begin_;                                                                      \
     } while (0)
 
-static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_report *report)
-{
+static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_report *report) {
     typedef ab_status (*act)(ab_domain *, const ab_step *, ab_report *);
     for (size_t b = 0; b < s->body_count; ++b) {
         const act call = *(const act *)((const char *)s->domains[b]->ops + offset);
@@ -161,8 +163,7 @@ static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_rep
 }
 #define EACH(what) each(s, &step, offsetof(ab_domain_ops, what), report)
 
-ab_status ab_schedule_step(ab_schedule *s, ab_report *report)
-{
+ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     const double dt = choose_dt(s);
     ab_step step = {.time = s->time, .dt = dt, .number = s->number};
@@ -206,24 +207,31 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report)
     return AB_OK;
 }
 
-void ab_schedule_view(const ab_schedule *s, ab_state_view *view)
-{
-    *view = (ab_state_view){.scene = s->scene, .time = s->time, .dt = s->dt, .step = s->number, .limit = s->limit, .domains = s->domains, .energy = s->energy, .motion = s->motion,
-                            .energy_start = s->energy_start, .total = s->total, .remainder = s->total_now - s->total_start};
+void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
+    *view = (ab_state_view){.scene = s->scene,
+                            .time = s->time,
+                            .dt = s->dt,
+                            .step = s->number,
+                            .limit = s->limit,
+                            .domains = s->domains,
+                            .energy = s->energy,
+                            .motion = s->motion,
+                            .energy_start = s->energy_start,
+                            .total = s->total,
+                            .remainder = s->total_now - s->total_start};
     view->contacts = s->interaction ? s->interaction->totals(s->interaction) : NULL;
 }
 
 /* ---- a run --------------------------------------------------------------------------------------------------------------- */
 
-static void warn_of_dt(const ab_schedule *s, ab_report *report)
-{
+static void warn_of_dt(const ab_schedule *s, ab_report *report) {
     if (s->scene->time_dt > s->critical_dt)
-        ab_report_warning(report, s->scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", s->scene->time_dt, s->critical_dt, s->limit);
+        ab_report_warning(report, s->scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
+                          s->scene->time_dt, s->critical_dt, s->limit);
 }
 
 /* Steps until the end, a failure or a signal. */
-static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progress, ab_report *report)
-{
+static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progress, ab_report *report) {
     while (s->time < s->scene->time_end && !stop_signal) {
         AB_TRY(ab_schedule_step(s, report));
         ab_state_view view;
@@ -237,8 +245,7 @@ static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progr
     return AB_OK;
 }
 
-ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report *report)
-{
+ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report *report) {
     ab_schedule *s = NULL;
     AB_TRY(ab_schedule_create(scene, options, &s, report));
     warn_of_dt(s, report);
@@ -264,8 +271,14 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
     status = advance(s, results, &progress, report);
     ab_progress_end(&progress);
-    ab_run_facts facts = {.wall_seconds = seconds(CLOCK_MONOTONIC) - wall, .cpu_seconds = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu, .steps = s->number, .threads = options->threads,
-                          .points = s->points, .version = ABUT_VERSION, .outcome = "done", .plan_json = plan_json.failed ? NULL : plan_json.bytes};
+    ab_run_facts facts = {.wall_seconds = seconds(CLOCK_MONOTONIC) - wall,
+                          .cpu_seconds = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu,
+                          .steps = s->number,
+                          .threads = options->threads,
+                          .points = s->points,
+                          .version = ABUT_VERSION,
+                          .outcome = "done",
+                          .plan_json = plan_json.failed ? NULL : plan_json.bytes};
     char outcome[256];
     if (status != AB_OK) {
         const char *why = ab_report_text(report, 0);

@@ -9,8 +9,10 @@
 #include "core/suggest.h"
 
 const char *ab_where_join(char *buffer, const char *where, const char *key) {
-    if (where[0] == '\0') snprintf(buffer, AB_WHERE, "%s", key);
-    else snprintf(buffer, AB_WHERE, "%.120s.%.64s", where, key);
+    if (where[0] == '\0')
+        snprintf(buffer, AB_WHERE, "%s", key);
+    else
+        snprintf(buffer, AB_WHERE, "%.120s.%.64s", where, key);
     return buffer;
 }
 
@@ -32,7 +34,8 @@ static const ab_key *key_named(const ab_section *section, const char *name) {
     return NULL;
 }
 
-void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped, const ab_node *node, const char *where) {
+void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped,
+                        const ab_node *node, const char *where) {
     enum { MOST = 200 };
     const char *names[MOST];
     size_t count = 0;
@@ -45,7 +48,8 @@ void ab_section_unknown(ab_reader *reader, const ab_section *section, const char
         for (size_t m = 0; m < more_count && !known; m++) known = strcmp(more[m], entry->key) == 0;
         if (known) continue;
         if (swapped && !entry->value->override_) { /* the file speaks to the plugin that --set has put another in place of */
-            ab_report_warning(reader->report, entry->mark, "%s: '%.64s' is no setting of the plugins chosen by --set; it is left out", where, entry->key);
+            ab_report_warning(reader->report, entry->mark, "%s: '%.64s' is no setting of the plugins chosen by --set; it is left out",
+                              where, entry->key);
             continue;
         }
         char tail[AB_TAIL];
@@ -70,7 +74,8 @@ bool ab_section_open(ab_reader *reader, const ab_section *section, const ab_node
             if (key->flags & AB_KEY_REQUIRED)
                 ab_report_error(reader->report, node->mark, "key '%s' is missing in %s: %s", key->name, shown, key->help);
         } else if (key->type == AB_KEY_LATER) {
-            ab_report_error(reader->report, value->mark, "%s is not in this version yet: %s", ab_where_join(path, where, key->name), key->help);
+            ab_report_error(reader->report, value->mark, "%s is not in this version yet: %s", ab_where_join(path, where, key->name),
+                            key->help);
         } else if (ab_node_is_null(value)) {
             ab_report_error(reader->report, value->mark, "%s has no value: %s", ab_where_join(path, where, key->name), key->help);
         } else {
@@ -90,7 +95,8 @@ static bool complain(ab_reader *reader, const ab_key *key, ab_mark mark, const c
 static const char *scalar(ab_reader *reader, const ab_key *key, const ab_node *node, const char *where, const char *wanted) {
     if (node->kind == AB_NODE_SCALAR && !ab_node_is_null(node)) return node->text;
     char path[AB_WHERE];
-    ab_report_error(reader->report, node->mark, "%s must be %s, not %s", ab_where_join(path, where, key->name), wanted, ab_node_kind_name(node));
+    ab_report_error(reader->report, node->mark, "%s must be %s, not %s", ab_where_join(path, where, key->name), wanted,
+                    ab_node_kind_name(node));
     return NULL;
 }
 
@@ -109,11 +115,13 @@ static bool in_range(ab_reader *reader, const ab_key *key, ab_mark mark, const c
 }
 
 static bool quantity(ab_reader *reader, const ab_key *key, const ab_node *node, const char *where, unsigned variables, ab_number *value) {
-    const char *wanted = variables == AB_NO_VARIABLE ? "a number" : "a number or a formula", *text = scalar(reader, key, node, where, wanted);
+    const char *wanted = variables == AB_NO_VARIABLE ? "a number" : "a number or a formula",
+               *text = scalar(reader, key, node, where, wanted);
     if (text == NULL) return false;
     char why[1200];
     ab_number read = {0, NULL, node->mark};
-    if (strcmp(text, "true") == 0 || strcmp(text, "false") == 0) return complain(reader, key, node->mark, where, "a number is needed, not a flag");
+    if (strcmp(text, "true") == 0 || strcmp(text, "false") == 0)
+        return complain(reader, key, node->mark, where, "a number is needed, not a flag");
     const ab_status status = ab_quantity_read(reader->formulas, reader->units, text, key->unit, variables, &read, why, sizeof why);
     if (status == AB_FAILED) reader->out_of_memory = true;
     if (status != AB_OK) return complain(reader, key, node->mark, where, why);
@@ -211,16 +219,22 @@ bool ab_read_word(ab_reader *reader, const ab_key *key, const ab_node *node, con
         names[count++] = word;
         snprintf(available + strlen(available), sizeof available - strlen(available), "%s%s", available[0] == '\0' ? "" : ", ", word);
     }
-    if (later) snprintf(why, sizeof why, "'%s' is not in this version yet; there is: %s", text, available);
-    else snprintf(why, sizeof why, "unknown word '%.64s'%s", text, ab_suggest_tail(text, names, count, tail, sizeof tail));
+    if (later)
+        snprintf(why, sizeof why, "'%s' is not in this version yet; there is: %s", text, available);
+    else
+        snprintf(why, sizeof why, "unknown word '%.64s'%s", text, ab_suggest_tail(text, names, count, tail, sizeof tail));
     return complain(reader, key, node == NULL ? AB_NOWHERE : node->mark, where, why);
 }
 
 static bool is_pair(ab_reader *reader, const ab_key *key, const ab_node *node, const char *where) {
     char path[AB_WHERE];
     if (node->kind == AB_NODE_LIST && node->count == 2) return true;
-    if (node->kind == AB_NODE_LIST) ab_report_error(reader->report, node->mark, "%s needs two numbers [x, y], not %zu", ab_where_join(path, where, key->name), node->count);
-    else ab_report_error(reader->report, node->mark, "%s must be two numbers [x, y], not %s", ab_where_join(path, where, key->name), ab_node_kind_name(node));
+    if (node->kind == AB_NODE_LIST)
+        ab_report_error(reader->report, node->mark, "%s needs two numbers [x, y], not %zu", ab_where_join(path, where, key->name),
+                        node->count);
+    else
+        ab_report_error(reader->report, node->mark, "%s must be two numbers [x, y], not %s", ab_where_join(path, where, key->name),
+                        ab_node_kind_name(node));
     return false;
 }
 
@@ -257,6 +271,7 @@ bool ab_name_ok(ab_reader *reader, const char *what, const char *name, ab_mark m
     bool good = length > 0 && length <= 64 && (isalpha((unsigned char)name[0]) || name[0] == '_');
     for (size_t i = 0; i < length && good; i++) good = isalnum((unsigned char)name[i]) || name[i] == '_' || name[i] == '-';
     if (!good)
-        ab_report_error(reader->report, mark, "'%.80s' cannot be the name of a %s: letters, digits, '_' and '-', not a digit first, at most 64", name, what);
+        ab_report_error(reader->report, mark,
+                        "'%.80s' cannot be the name of a %s: letters, digits, '_' and '-', not a digit first, at most 64", name, what);
     return good;
 }

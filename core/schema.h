@@ -38,7 +38,7 @@ typedef struct ab_section {
     const char *title, *help, *example; /* of docs/scene.md */
     const ab_key *keys;
     size_t count;
-    const char *more;                   /* what further keys may stand here (settings of plugins), or NULL: none */
+    const char *more; /* what further keys may stand here (settings of plugins), or NULL: none */
 } ab_section;
 
 typedef struct ab_reader { /* what every check needs */
@@ -56,7 +56,8 @@ enum { AB_WHERE = 200, AB_TAIL = 1024 }; /* "contact[0].friction"; "; did you me
 bool ab_section_open(ab_reader *reader, const ab_section *section, const ab_node *node, const char *where, const ab_node **values);
 /* The check of unknown keys alone, with further names that are known: for sections with settings of plugins. `swapped`: --set has named the plugin, so keys
  * of the file that only the plugin named there would know are warned of and left out. */
-void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped, const ab_node *node, const char *where);
+void ab_section_unknown(ab_reader *reader, const ab_section *section, const char *const *more, size_t more_count, bool swapped,
+                        const ab_node *node, const char *where);
 
 /* One value each. node NULL: the key's default, where it has one. False when nothing was read, or a mistake was reported; *value is then unchanged.
  * `where` is the section's place. */

@@ -8,10 +8,14 @@
 
 /* The same key as the tables of the scene have, so that ranges and units are checked by the same code. */
 static ab_key as_key(const ab_param *param) {
-    ab_key key = {.name = param->name, .type = AB_KEY_NUMBER, .unit = param->unit == NULL || param->unit[0] == '\0' ? "1" : param->unit, .help = param->help == NULL ? "" : param->help};
+    ab_key key = {.name = param->name,
+                  .type = AB_KEY_NUMBER,
+                  .unit = param->unit == NULL || param->unit[0] == '\0' ? "1" : param->unit,
+                  .help = param->help == NULL ? "" : param->help};
     const bool open = param->min == 0 && param->max == 0;
     if (!open && (isfinite(param->min) || isfinite(param->max))) {
-        key.flags = AB_KEY_RANGE | (param->flags & AB_MIN_OPEN ? AB_KEY_MIN_OPEN : 0u) | (param->flags & AB_MAX_OPEN ? AB_KEY_MAX_OPEN : 0u);
+        key.flags =
+            AB_KEY_RANGE | (param->flags & AB_MIN_OPEN ? AB_KEY_MIN_OPEN : 0u) | (param->flags & AB_MAX_OPEN ? AB_KEY_MAX_OPEN : 0u);
         key.min = param->min;
         key.max = param->max;
     }
@@ -41,7 +45,8 @@ static void read_direction(ab_reader *reader, const ab_key *key, const ab_node *
     value->columns = 3;
 }
 
-static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *key, const ab_node *node, const char *where, ab_value *value) {
+static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *key, const ab_node *node, const char *where,
+                        ab_value *value) {
     enum { MOST = 32 };
     char words[512], path[AB_WHERE], tail[AB_TAIL];
     const char *names[MOST];
@@ -53,7 +58,8 @@ static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *
     }
     ab_where_join(path, where, param->name);
     if (node->kind != AB_NODE_SCALAR) {
-        ab_report_error(reader->report, node->mark, "%s must be %s, not %s", path, direction ? "a word or a direction [x, y]" : "one word", ab_node_kind_name(node));
+        ab_report_error(reader->report, node->mark, "%s must be %s, not %s", path, direction ? "a word or a direction [x, y]" : "one word",
+                        ab_node_kind_name(node));
         return;
     }
     snprintf(words, sizeof words, "%s", param->choices == NULL ? "" : param->choices);
@@ -68,8 +74,8 @@ static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *
         }
         names[count++] = word;
     }
-    ab_report_error(reader->report, node->mark, "%s: unknown word '%.64s'%s%s", path, node->text, ab_suggest_tail(node->text, names, count, tail, sizeof tail),
-                    direction ? ", or a direction [x, y]" : "");
+    ab_report_error(reader->report, node->mark, "%s: unknown word '%.64s'%s%s", path, node->text,
+                    ab_suggest_tail(node->text, names, count, tail, sizeof tail), direction ? ", or a direction [x, y]" : "");
 }
 
 static bool read_row(ab_reader *reader, const ab_key *key, const ab_node *row, size_t columns, const char *where, double *values) {
@@ -81,15 +87,19 @@ static bool read_row(ab_reader *reader, const ab_key *key, const ab_node *row, s
     return good;
 }
 
-static void read_table(ab_reader *reader, const ab_param *param, const ab_key *key, const ab_node *node, const char *where, ab_value *value) {
+static void read_table(ab_reader *reader, const ab_param *param, const ab_key *key, const ab_node *node, const char *where,
+                       ab_value *value) {
     char path[AB_WHERE];
     ab_where_join(path, where, param->name);
     if (node->kind != AB_NODE_LIST || node->count == 0) {
-        ab_report_error(reader->report, node->mark, "%s must be a list of %s, not %s", path, param->flags & AB_COLUMNS_2 ? "pairs [[a, b], ...]" : "rows",
+        ab_report_error(reader->report, node->mark, "%s must be a list of %s, not %s", path,
+                        param->flags & AB_COLUMNS_2 ? "pairs [[a, b], ...]" : "rows",
                         node->kind == AB_NODE_LIST ? "an empty one" : ab_node_kind_name(node));
         return;
     }
-    const size_t rows = node->count, columns = param->flags & AB_COLUMNS_2 ? 2 : node->items[0]->kind == AB_NODE_LIST ? node->items[0]->count : 1;
+    const size_t rows = node->count, columns = param->flags & AB_COLUMNS_2            ? 2
+                                               : node->items[0]->kind == AB_NODE_LIST ? node->items[0]->count
+                                                                                      : 1;
     double *table = ab_reader_take(reader, rows * columns, sizeof *table);
     if (table == NULL) return;
     bool good = columns > 0;
@@ -97,7 +107,8 @@ static void read_table(ab_reader *reader, const ab_param *param, const ab_key *k
         const ab_node *row = node->items[r];
         const size_t found = row->kind == AB_NODE_LIST ? row->count : 1;
         if (found != columns || row->kind == AB_NODE_MAP || columns == 0) {
-            ab_report_error(reader->report, row->mark, "%s: row %zu must have %zu numbers, not %zu", path, r, columns == 0 ? 1 : columns, found);
+            ab_report_error(reader->report, row->mark, "%s: row %zu must have %zu numbers, not %zu", path, r, columns == 0 ? 1 : columns,
+                            found);
             good = false;
         } else if (!read_row(reader, key, row, columns, where, table + r * columns)) {
             good = false;
@@ -114,21 +125,21 @@ static void read_one(ab_reader *reader, const ab_param *param, const ab_node *no
     long whole = 0;
     bool flag = false;
     switch (param->type) {
-        case AB_INTEGER:
-            if (ab_read_integer(reader, &key, node, where, &whole)) {
-                value->integer = whole;
-                value->real = (double)whole;
-            }
-            break;
-        case AB_FLAG:
-            if (ab_read_flag(reader, &key, node, where, &flag)) {
-                value->integer = flag;
-                value->real = flag;
-            }
-            break;
-        case AB_CHOICE: read_choice(reader, param, &key, node, where, value); break;
-        case AB_TABLE: read_table(reader, param, &key, node, where, value); break;
-        default: ab_read_number(reader, &key, node, where, &value->real); break;
+    case AB_INTEGER:
+        if (ab_read_integer(reader, &key, node, where, &whole)) {
+            value->integer = whole;
+            value->real = (double)whole;
+        }
+        break;
+    case AB_FLAG:
+        if (ab_read_flag(reader, &key, node, where, &flag)) {
+            value->integer = flag;
+            value->real = flag;
+        }
+        break;
+    case AB_CHOICE: read_choice(reader, param, &key, node, where, value); break;
+    case AB_TABLE: read_table(reader, param, &key, node, where, value); break;
+    default: ab_read_number(reader, &key, node, where, &value->real); break;
     }
 }
 
@@ -143,11 +154,13 @@ ab_value *ab_settings_read(ab_reader *reader, const ab_class *class_, const ab_n
         char path[AB_WHERE];
         if (found == NULL) {
             if (param->flags & AB_REQUIRED)
-                ab_report_error(reader->report, node->mark, "key '%s' is missing in %s: %s needs it (%s%s%s)", param->name, where, class_->name, param->help == NULL ? "" : param->help,
+                ab_report_error(reader->report, node->mark, "key '%s' is missing in %s: %s needs it (%s%s%s)", param->name, where,
+                                class_->name, param->help == NULL ? "" : param->help,
                                 param->unit == NULL || strcmp(param->unit, "1") == 0 || param->unit[0] == '\0' ? "" : ", ",
                                 param->unit == NULL || strcmp(param->unit, "1") == 0 ? "" : param->unit);
         } else if (ab_node_is_null(found)) {
-            ab_report_error(reader->report, found->mark, "%s has no value: %s", ab_where_join(path, where, param->name), param->help == NULL ? "" : param->help);
+            ab_report_error(reader->report, found->mark, "%s has no value: %s", ab_where_join(path, where, param->name),
+                            param->help == NULL ? "" : param->help);
         } else {
             values[i].given = 1;
             read_one(reader, param, found, where, &values[i]);

@@ -93,7 +93,8 @@ ab_status ab_units_factor(ab_units *units, const char *unit, const char *wanted,
     *factor = 1;
     if (wanted != NULL && strcmp(unit, wanted) == 0) return AB_OK;
     if (!open_system(units)) {
-        snprintf(why, why_size, "the unit database of UDUNITS-2 cannot be read (package libudunits2-data); write the value in SI without a unit");
+        snprintf(why, why_size,
+                 "the unit database of UDUNITS-2 cannot be read (package libudunits2-data); write the value in SI without a unit");
         return AB_BAD_INPUT;
     }
     if (++units->conversions > MOST_CONVERSIONS) {
@@ -110,8 +111,10 @@ ab_status ab_units_factor(ab_units *units, const char *unit, const char *wanted,
     if (to == NULL) {
         snprintf(why, why_size, "unit '%s' cannot be converted", wanted == NULL ? unit : wanted);
     } else if (!compatible(from, to)) {
-        if (strcmp(wanted == NULL ? "" : wanted, "1") == 0) snprintf(why, why_size, "the unit '%s' has a dimension, but a pure number (unit 1) is needed", unit);
-        else snprintf(why, why_size, "the unit '%s' does not have the dimension of '%s'", unit, wanted == NULL ? "" : wanted);
+        if (strcmp(wanted == NULL ? "" : wanted, "1") == 0)
+            snprintf(why, why_size, "the unit '%s' has a dimension, but a pure number (unit 1) is needed", unit);
+        else
+            snprintf(why, why_size, "the unit '%s' does not have the dimension of '%s'", unit, wanted == NULL ? "" : wanted);
     } else {
         status = convert(from, to, unit, factor, why, why_size);
     }

@@ -16,8 +16,7 @@ typedef double v2_loose __attribute__((vector_size(16), aligned(8)));
 typedef int32_t v8_int __attribute__((vector_size(32)));
 typedef int64_t v8_mask __attribute__((vector_size(64)));
 
-static inline v8 v8_set(double a)
-{
+static inline v8 v8_set(double a) {
 #if defined(__AVX512F__)
     return (v8){a, a, a, a, a, a, a, a};
 #else
@@ -30,16 +29,14 @@ static inline v4 v4_load(const double *p) { return *(const v4_loose *)p; }
 static inline void v8_store(double *p, v8 a) { *(v8_loose *)p = a; }
 static inline void v4_store(double *p, v4 a) { *(v4_loose *)p = a; }
 static inline v8 v8_select(v8_mask c, v8 a, v8 b) { return (v8)((c & (v8_mask)a) | (~c & (v8_mask)b)); }
-static inline v8 v8_min(v8 a, v8 b)
-{
+static inline v8 v8_min(v8 a, v8 b) {
 #if defined(__AVX512F__)
     return (v8)_mm512_min_pd((__m512d)a, (__m512d)b);
 #else
     return v8_select(a < b, a, b);
 #endif
 }
-static inline v8 v8_max(v8 a, v8 b)
-{
+static inline v8 v8_max(v8 a, v8 b) {
 #if defined(__AVX512F__)
     return (v8)_mm512_max_pd((__m512d)a, (__m512d)b);
 #else
@@ -47,8 +44,7 @@ static inline v8 v8_max(v8 a, v8 b)
 #endif
 }
 /* a < b ? x : y, lane by lane. */
-static inline v8 v8_less(v8 a, v8 b, v8 x, v8 y)
-{
+static inline v8 v8_less(v8 a, v8 b, v8 x, v8 y) {
 #if defined(__AVX512F__)
     return (v8)_mm512_mask_blend_pd(_mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_LT_OQ), (__m512d)y, (__m512d)x);
 #else
@@ -59,10 +55,10 @@ static inline v8 v8_less(v8 a, v8 b, v8 x, v8 y)
 #if defined(__AVX512F__)
 #define v8_two(a, b, bits) ((v8)_mm512_mask_broadcastsd_pd(_mm512_set1_pd(*(a)), (bits), _mm_load_sd(b)))
 #else
-#define V8_BIT(bits, l) (-(int64_t)((bits) >> (l) & 1))
-#define v8_two(a, b, bits)                                                                                                                              \
-    v8_select((v8_mask){V8_BIT(bits, 0), V8_BIT(bits, 1), V8_BIT(bits, 2), V8_BIT(bits, 3), V8_BIT(bits, 4), V8_BIT(bits, 5), V8_BIT(bits, 6), \
-                        V8_BIT(bits, 7)},                                                                                                               \
+#define V8_BIT(bits, l) (-(int64_t)((bits) >> (l)&1))
+#define v8_two(a, b, bits)                                                                                                                 \
+    v8_select((v8_mask){V8_BIT(bits, 0), V8_BIT(bits, 1), V8_BIT(bits, 2), V8_BIT(bits, 3), V8_BIT(bits, 4), V8_BIT(bits, 5),              \
+                        V8_BIT(bits, 6), V8_BIT(bits, 7)},                                                                                 \
               v8_set(*(b)), v8_set(*(a)))
 #endif
 static inline v8 v8_floor(v8 a) /* |a| < 2^51 */
@@ -78,22 +74,19 @@ static inline double v8_sum(v8 a) /* in one fixed order */
 {
     return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
 }
-static inline double v8_lowest(v8 a)
-{
+static inline double v8_lowest(v8 a) {
     double m = a[0];
     for (int l = 1; l < 8; ++l) m = a[l] < m ? a[l] : m;
     return m;
 }
-static inline double v8_highest(v8 a)
-{
+static inline double v8_highest(v8 a) {
     double m = a[0];
     for (int l = 1; l < 8; ++l) m = a[l] > m ? a[l] : m;
     return m;
 }
 static inline v2 v2_load(const double *p) { return *(const v2_loose *)p; }
 static inline void v2_store(double *p, v2 a) { *(v2_loose *)p = a; }
-static inline v8 v8_join(v4 low, v4 high)
-{
+static inline v8 v8_join(v4 low, v4 high) {
 #if defined(__AVX512F__)
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
 #else
@@ -103,8 +96,7 @@ static inline v8 v8_join(v4 low, v4 high)
     return both;
 #endif
 }
-static inline v4 v8_low(v8 a)
-{
+static inline v4 v8_low(v8 a) {
     v4 low;
     __builtin_memcpy(&low, &a, sizeof low);
     return low;
@@ -114,8 +106,7 @@ static inline v4 v8_low(v8 a)
 #define V8_IN_MEMORY(array) __asm__("" : "+m"(array))
 
 /* Rows become columns: between eight points' component c and one point's eight components. */
-static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])
-{
+static inline __attribute__((always_inline)) void v8_transpose(v8 r[8]) {
 #if defined(__AVX512F__)
 #define AB_LO(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
 #define AB_HI(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
@@ -147,13 +138,14 @@ static inline __attribute__((always_inline)) void v8_transpose(v8 r[8])
 }
 
 /* The same for eight points of four components: four vectors over the points. */
-static inline __attribute__((always_inline)) void v8_transpose_half(const v4 r[8], v8 out[4])
-{
+static inline __attribute__((always_inline)) void v8_transpose_half(const v4 r[8], v8 out[4]) {
 #if defined(__AVX512F__)
     const v8 p0 = v8_join(r[0], r[4]), p1 = v8_join(r[1], r[5]), p2 = v8_join(r[2], r[6]), p3 = v8_join(r[3], r[7]);
     /* p0: 0a 0b 0c 0d 4a 4b 4c 4d, ... */
-    const v8 ac0 = __builtin_shufflevector(p0, p1, 0, 8, 2, 10, 4, 12, 6, 14), bd0 = __builtin_shufflevector(p0, p1, 1, 9, 3, 11, 5, 13, 7, 15);
-    const v8 ac1 = __builtin_shufflevector(p2, p3, 0, 8, 2, 10, 4, 12, 6, 14), bd1 = __builtin_shufflevector(p2, p3, 1, 9, 3, 11, 5, 13, 7, 15);
+    const v8 ac0 = __builtin_shufflevector(p0, p1, 0, 8, 2, 10, 4, 12, 6, 14),
+             bd0 = __builtin_shufflevector(p0, p1, 1, 9, 3, 11, 5, 13, 7, 15);
+    const v8 ac1 = __builtin_shufflevector(p2, p3, 0, 8, 2, 10, 4, 12, 6, 14),
+             bd1 = __builtin_shufflevector(p2, p3, 1, 9, 3, 11, 5, 13, 7, 15);
     out[0] = __builtin_shufflevector(ac0, ac1, 0, 1, 8, 9, 4, 5, 12, 13);
     out[1] = __builtin_shufflevector(bd0, bd1, 0, 1, 8, 9, 4, 5, 12, 13);
     out[2] = __builtin_shufflevector(ac0, ac1, 2, 3, 10, 11, 6, 7, 14, 15);

@@ -3,25 +3,25 @@
 
 #include <string.h>
 
-#define WORDS(array) {array, sizeof(array) / sizeof(array)[0]}
+#define WORDS(array)                                                                                                                       \
+    { array, sizeof(array) / sizeof(array)[0] }
 
-#define ENERGY_WORDS                                                                                  \
-    {"energy.kinetic", "J", "kinetic energy"}, {"energy.strain", "J", "strain energy"},               \
-        {"energy.potential", "J", "potential energy in gravity, from the start"},                     \
-        {"energy.plastic", "J", "dissipated in the material so far"},                                 \
-        {"energy.friction", "J", "dissipated by slip in contact so far"},                             \
-        {"energy.contact", "J", "lost by normal impulses in contact so far"},                         \
-        {"energy.boundary", "J", "taken away by sides of the grid so far"},                           \
-        {"energy.damping", "J", "taken away by local damping so far"},                                \
-        {"energy.external", "J", "work of tractions so far"},                                         \
-        {"energy.outflow", "J", "carried out by points that left so far"},                            \
-        {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, \
-        {"energy.total", "J", "kinetic + strain + potential"}
+#define ENERGY_WORDS                                                                                                                       \
+    {"energy.kinetic", "J", "kinetic energy"}, {"energy.strain", "J", "strain energy"},                                                    \
+        {"energy.potential", "J", "potential energy in gravity, from the start"},                                                          \
+        {"energy.plastic", "J", "dissipated in the material so far"}, {"energy.friction", "J", "dissipated by slip in contact so far"},    \
+        {"energy.contact", "J", "lost by normal impulses in contact so far"},                                                              \
+        {"energy.boundary", "J", "taken away by sides of the grid so far"}, {"energy.damping", "J", "taken away by local damping so far"}, \
+        {"energy.external", "J", "work of tractions so far"}, {"energy.outflow", "J", "carried out by points that left so far"},           \
+        {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, {                                                \
+        "energy.total", "J", "kinetic + strain + potential"                                                                                \
+    }
 
-#define MOMENTUM_WORDS                                                                                       \
-    {"mass", "kg", "mass (per m of thickness)"}, {"momentum.x", "kg m s-1", "linear momentum along x"},      \
-        {"momentum.y", "kg m s-1", "linear momentum along y"},                                               \
-        {"angular-momentum", "kg m2 s-1", "angular momentum about the origin"}
+#define MOMENTUM_WORDS                                                                                                                     \
+    {"mass", "kg", "mass (per m of thickness)"}, {"momentum.x", "kg m s-1", "linear momentum along x"},                                    \
+        {"momentum.y", "kg m s-1", "linear momentum along y"}, {                                                                           \
+        "angular-momentum", "kg m2 s-1", "angular momentum about the origin"                                                               \
+    }
 
 static const ab_word body_values[] = {
     {"position.x", "m", "place along x"},

@@ -19,8 +19,9 @@ extern const ab_words ab_words_contact_values; /* monitor values of a contact */
 extern const ab_words ab_words_scene_values;   /* monitor values of the whole scene */
 extern const ab_words ab_words_over;           /* how a body's points become one number */
 extern const ab_words ab_words_norms;          /* unit: "" the monitor's own, "s" a time, "*s" own times s, "/s" own by s */
-extern const ab_words ab_words_columns;        /* ledger columns of history.csv; also as BODY.column, but for those that ab_column_is_total names */
-extern const ab_words ab_words_fields;         /* output fields that every material-point body has */
+extern const ab_words
+    ab_words_columns;                  /* ledger columns of history.csv; also as BODY.column, but for those that ab_column_is_total names */
+extern const ab_words ab_words_fields; /* output fields that every material-point body has */
 
 const ab_word *ab_words_find(const ab_words *words, const char *name);
 /* Columns there is only one of (t, step, dt, remainder). */

@@ -12,7 +12,7 @@ typedef struct mpm_long_batch {
     bool turns;
     const ab_class *class_;
     double strain[4][LONG] __attribute__((aligned(64)));
-    double turned[4][LONG] __attribute__((aligned(64)));  /* old stress, turned with the material */
+    double turned[4][LONG] __attribute__((aligned(64))); /* old stress, turned with the material */
     double stress[4][LONG] __attribute__((aligned(64)));
     double jacobian[LONG] __attribute__((aligned(64)));
     double gradient[5][LONG] __attribute__((aligned(64)));
@@ -25,12 +25,12 @@ typedef struct mpm_long_batch {
     uint8_t flag[LONG];
 } mpm_long_batch;
 
-static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, const ab_step *step)
-{
+static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, const ab_step *step) {
     const ab_class *class_ = &body->material->loaded->class_;
     batch->class_ = class_;
     batch->turns = body->rows.turns;
-    batch->view = (ab_batch){.struct_size = sizeof(ab_batch), .dimension = 2, .components = 4, .ld = LONG, .time = step->time, .dt = step->dt};
+    batch->view =
+        (ab_batch){.struct_size = sizeof(ab_batch), .dimension = 2, .components = 4, .ld = LONG, .time = step->time, .dt = step->dt};
     ab_batch *v = &batch->view;
     v->strain_increment = batch->strain[0];
     v->stress0 = batch->turned[0];
@@ -48,8 +48,8 @@ static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, c
 
 /* Block b of the batch: strain increment and turned stress. The increment is that of Hughes and Winget (1980): G = H (I + H/2)^-1, so that a finite rotation
  * gives no strain; in two dimensions the rotation is one angle. Deformation gradients of the points move on to the end of the step. */
-static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batch *batch, mpm_rows rows, double *block, const double h[4][LONG], uint32_t b)
-{
+static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batch *batch, mpm_rows rows, double *block,
+                                                                   const double h[4][LONG], uint32_t b) {
     const size_t at = 8 * (size_t)b;
     const v8 one = v8_set(1.0), half = v8_set(0.5);
     const v8 hxx = v8_load(h[0] + at), hxy = v8_load(h[1] + at), hyx = v8_load(h[2] + at), hyy = v8_load(h[3] + at);
@@ -58,13 +58,15 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
     const v8 twist = half * (hyx - hxy), quarter = v8_set(0.25) * twist * twist, square = middle * middle;
     const v8 both = one / (middle * (square + quarter)); /* one division for 1/middle and 1/(middle^2 + twist^2/4) */
     const v8 inverse = both * (square + quarter), scale = both * middle;
-    const v8 cosine = (square - quarter) * scale, sine = twist * middle * scale; /* of the angle whose half has the tangent twist/(2 middle) */
+    const v8 cosine = (square - quarter) * scale,
+             sine = twist * middle * scale; /* of the angle whose half has the tangent twist/(2 middle) */
     v8_store(batch->strain[0] + at, (hxx + half * cross) * inverse);
     v8_store(batch->strain[1] + at, (hyy + half * cross) * inverse);
     v8_store(batch->strain[3] + at, (hxy + hyx) * inverse);
     v8_store(batch->jacobian + at, one + trace + cross); /* det(I + H) */
     const v8 cc = cosine * cosine, ss = sine * sine, cs = cosine * sine;
-    const v8 sxx = v8_load(block + 8 * ROW_STRESS), syy = v8_load(block + 8 * (ROW_STRESS + 1)), sxy = v8_load(block + 8 * (ROW_STRESS + 3));
+    const v8 sxx = v8_load(block + 8 * ROW_STRESS), syy = v8_load(block + 8 * (ROW_STRESS + 1)),
+             sxy = v8_load(block + 8 * (ROW_STRESS + 3));
     v8_store(batch->turned[0] + at, cc * sxx + ss * syy - (cs + cs) * sxy);
     v8_store(batch->turned[1] + at, ss * sxx + cc * syy + (cs + cs) * sxy);
     v8_store(batch->turned[2] + at, v8_load(block + 8 * (ROW_STRESS + 2)));
@@ -76,7 +78,8 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
     if (rows.gradient >= 0) {
         double *f = block + 8 * rows.gradient;
         const v8 fxx = v8_load(f), fxy = v8_load(f + 8), fyx = v8_load(f + 16), fyy = v8_load(f + 24);
-        const v8 new_f[4] = {fxx + hxx * fxx + hxy * fyx, fxy + hxx * fxy + hxy * fyy, fyx + hyx * fxx + hyy * fyx, fyy + hyx * fxy + hyy * fyy};
+        const v8 new_f[4] = {fxx + hxx * fxx + hxy * fyx, fxy + hxx * fxy + hxy * fyy, fyx + hyx * fxx + hyy * fyx,
+                             fyy + hyx * fxy + hyy * fyy};
         for (int c = 0; c < 4; ++c) {
             v8_store(f + 8 * c, new_f[c]);
             v8_store(batch->gradient[c] + at, new_f[c]);
@@ -99,15 +102,14 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
 }
 
 /* The material's answer for `count` points; not 0: it gave up. */
-static inline int mpm_batch_call(mpm_long_batch *batch, const mpm_body *body, size_t count)
-{
+static inline int mpm_batch_call(mpm_long_batch *batch, const mpm_body *body, size_t count) {
     batch->view.count = count;
     return body->material->loaded->material.update(body->self, &batch->view);
 }
 
 /* Block b: new stress, states and volume; work of the step. */
-static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_long_batch *batch, mpm_rows rows, double *block, uint32_t b, v8 *strain_work, v8 *plastic_work, v8 *fastest)
-{
+static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_long_batch *batch, mpm_rows rows, double *block, uint32_t b,
+                                                                   v8 *strain_work, v8 *plastic_work, v8 *fastest) {
     const size_t at = 8 * (size_t)b;
     const v8 volume0 = v8_load(block + 8 * ROW_VOLUME), volume = volume0 * v8_load(batch->jacobian + at);
     v8 work = v8_set(0.0);
@@ -124,10 +126,10 @@ static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_lon
 }
 
 /* A' = (I + H) A (I + H)^T for the domain tensor (xx, yy, xy) of block b. */
-static inline __attribute__((always_inline)) void mpm_stretch_extent(double *e, const double h[4][LONG], uint32_t b)
-{
+static inline __attribute__((always_inline)) void mpm_stretch_extent(double *e, const double h[4][LONG], uint32_t b) {
     const size_t at = 8 * (size_t)b;
-    const v8 fxx = v8_set(1.0) + v8_load(h[0] + at), fxy = v8_load(h[1] + at), fyx = v8_load(h[2] + at), fyy = v8_set(1.0) + v8_load(h[3] + at);
+    const v8 fxx = v8_set(1.0) + v8_load(h[0] + at), fxy = v8_load(h[1] + at), fyx = v8_load(h[2] + at),
+             fyy = v8_set(1.0) + v8_load(h[3] + at);
     const v8 axx = v8_load(e), ayy = v8_load(e + 8), axy = v8_load(e + 16);
     const v8 bxx = fxx * axx + fxy * axy, bxy = fxx * axy + fxy * ayy, byx = fyx * axx + fyy * axy, byy = fyx * axy + fyy * ayy;
     v8_store(e, bxx * fxx + bxy * fxy);

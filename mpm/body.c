@@ -16,14 +16,12 @@ enum { POINTS_PER_THREAD = 4000 };
 
 /* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen): gimp .803 with two, .664 with four points
  * per direction. The linear basis has no positive limit (a point just behind a node); the figure is what it bears in practice. */
-static double stable_courant(const mpm_body *body)
-{
+static double stable_courant(const mpm_body *body) {
     if (body->kernel->nodes == 3) return body->domain.spec->per_cell <= 4 ? 0.803 : 0.664;
     return 0.664;
 }
 
-static void destroy(ab_domain *domain)
-{
+static void destroy(ab_domain *domain) {
     mpm_body *body = (mpm_body *)domain;
     if (body->self && body->material->loaded->class_.destroy) body->material->loaded->class_.destroy(body->self);
     ab_memory_give(body->blocks, body->block_capacity * 64 * (size_t)body->rows.count);
@@ -39,23 +37,21 @@ static void destroy(ab_domain *domain)
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
 
-static double critical_dt(ab_domain *domain, const char **limit)
-{
+static double critical_dt(ab_domain *domain, const char **limit) {
     mpm_body *body = (mpm_body *)domain;
-    snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name, body->h);
+    snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name,
+             body->h);
     *limit = body->limit;
     return stable_courant(body) * body->h / (body->wave_speed + body->largest_speed);
 }
 
-static void scatter_all(mpm_body *body)
-{
+static void scatter_all(mpm_body *body) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
         if (body->tiles[k].patch >= 0) body->kernel->scatter(body, k);
 }
 
-static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report)
-{
+static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (body->sort_due) {
         AB_TRY(mpm_points_sort(body, report));
@@ -69,11 +65,10 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
 }
 
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
-static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report)
-{
+static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report) {
     mpm_loads_follow(body, step);
-    body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) && (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) &&
-                           step->number % WAVE_SPEED_EVERY == 0;
+    body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
+                           (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) && step->number % WAVE_SPEED_EVERY == 0;
     int failed = 0;
     const int none = INT_MAX;
     int first = none; /* block of the first tile that failed, whichever thread met it */
@@ -86,9 +81,10 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     }
     if (failed) {
         const double *x = mpm_block(body, (size_t)first);
-        return ab_report_failure(report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m: %s; a smaller dt or a finer grid may help", body->material->name,
-                                 body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
-                                 body->service.message[0] ? body->service.message : "no reason given");
+        return ab_report_failure(
+            report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m: %s; a smaller dt or a finer grid may help",
+            body->material->name, body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
+            body->service.message[0] ? body->service.message : "no reason given");
     }
     double fastest = 0.0;
     body->last_strain = 0.0;
@@ -103,8 +99,7 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     return AB_OK;
 }
 
-static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report)
-{
+static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     AB_TRY(stress_all(body, step, false, true, report));
     mpm_loads_scatter(body, step);
@@ -113,8 +108,7 @@ static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report
 }
 
 /* A point is outside the grid: stop, naming it, or let it go where the side says outflow. */
-static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *report)
-{
+static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *report) {
     static const char *const SIDE[AB_SIDES] = {"left", "right", "bottom", "top"};
     for (size_t slot = 0; slot < body->block_count * 8; ++slot) {
         if (body->ids[slot] == UINT64_MAX) continue;
@@ -127,14 +121,17 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
         }
         if (side < 0) continue;
         if (!isfinite(x[0]) || !isfinite(x[1]))
-            return ab_report_failure(report, "body '%s': point %llu has no finite place any more at t = %.9g s (step %ld): the run has blown up; use a smaller dt, basis gimp, update musl",
+            return ab_report_failure(report,
+                                     "body '%s': point %llu has no finite place any more at t = %.9g s (step %ld): the run has blown up; "
+                                     "use a smaller dt, basis gimp, update musl",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], step->time + step->dt, step->number);
         if (body->scene->side[side] != AB_SIDE_OUTFLOW)
             return ab_report_failure(report,
-                                     "body '%s': point %llu left the grid through its %s side at (%.6g, %.6g) m, velocity (%.4g, %.4g) m/s, t = %.9g s (step %ld); make the grid larger, "
+                                     "body '%s': point %llu left the grid through its %s side at (%.6g, %.6g) m, velocity (%.4g, %.4g) "
+                                     "m/s, t = %.9g s (step %ld); make the grid larger, "
                                      "hold that side (roller, fixed) or say 'outflow' there",
-                                     body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0], x[1] + body->origin[1], v[0], v[1],
-                                     step->time + step->dt, step->number);
+                                     body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0],
+                                     x[1] + body->origin[1], v[0], v[1], step->time + step->dt, step->number);
         const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1]);
         body->energy.outflow += carried;
         body->energy.kinetic -= carried; /* which this step's sum holds still */
@@ -144,8 +141,7 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
 }
 
 /* Adds up the tiles' sums; sees to points that leave their tile's patch, or the grid. */
-static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *report)
-{
+static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *report) {
     ab_motion motion = {0};
     double kinetic = 0.0, speed2 = 0.0, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     bool far = false;
@@ -176,17 +172,20 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     body->largest_speed = sqrt(speed2);
     if (!isfinite(kinetic)) AB_TRY(look_outside(body, step, report));
     if (!isfinite(kinetic))
-        return ab_report_failure(report, "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown up; use a smaller dt, basis gimp, update musl",
+        return ab_report_failure(report,
+                                 "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown "
+                                 "up; use a smaller dt, basis gimp, update musl",
                                  body->domain.spec->name, step->time + step->dt, step->number);
     if (low[0] < 0.0 || low[1] < 0.0 || high[0] > body->span[0] || high[1] > body->span[1]) AB_TRY(look_outside(body, step, report));
     if (far)
-        return ab_report_failure(report, "body '%s': a point moved %.3g m, many cells, in the step at t = %.9g s (speed %.4g m/s): the run has blown up; use a smaller dt", body->domain.spec->name,
-                                 body->largest_speed * step->dt, step->time, body->largest_speed);
+        return ab_report_failure(report,
+                                 "body '%s': a point moved %.3g m, many cells, in the step at t = %.9g s (speed %.4g m/s): the run has "
+                                 "blown up; use a smaller dt",
+                                 body->domain.spec->name, body->largest_speed * step->dt, step->time, body->largest_speed);
     return AB_OK;
 }
 
-static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report)
-{
+static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
     const bool remap = body->update == MPM_MUSL;
@@ -199,8 +198,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     return AB_OK;
 }
 
-static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report)
-{
+static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report) {
     (void)report;
     mpm_body *body = (mpm_body *)domain;
     mpm_grid_assemble_remap(body);
@@ -208,8 +206,7 @@ static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report
     return AB_OK;
 }
 
-static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report)
-{
+static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (body->update != MPM_USF) {
         AB_TRY(stress_all(body, step, true, !body->sort_due, report));
@@ -218,41 +215,38 @@ static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *repor
     }
     const size_t rows = 8 * (size_t)body->rows.count;
 #pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (size_t b = 0; b < body->block_count; ++b) memcpy(body->blocks + b * rows + 8 * ROW_X, body->blocks + b * rows + 8 * ROW_NEXT, 16 * sizeof(double));
+    for (size_t b = 0; b < body->block_count; ++b)
+        memcpy(body->blocks + b * rows + 8 * ROW_X, body->blocks + b * rows + 8 * ROW_NEXT, 16 * sizeof(double));
     return AB_OK;
 }
 
 /* Velocities and stresses are half a step apart (the scheme is a leap-frog): stresses are ahead when they are updated last and behind when they are
  * updated first. Half of the last increment brings the strain energy to the time of the kinetic one; without it their sum sways with w dt/2. */
-static void ledger(const ab_domain *domain, ab_energy *energy, ab_motion *motion)
-{
+static void ledger(const ab_domain *domain, ab_energy *energy, ab_motion *motion) {
     const mpm_body *body = (const mpm_body *)domain;
     *energy = body->energy;
     energy->strain += (body->update == MPM_USF ? 0.5 : -0.5) * body->last_strain;
     *motion = body->motion;
 }
 
-static void node_tiles(const ab_domain *domain, ab_node_tiles *tiles)
-{
+static void node_tiles(const ab_domain *domain, ab_node_tiles *tiles) {
     const mpm_body *body = (const mpm_body *)domain;
-    *tiles = (ab_node_tiles){.count = body->tile_count, .key = body->keys, .mass = body->own + OWN_MASS, .stride = OWN_RECORD, .version = body->version};
+    *tiles = (ab_node_tiles){
+        .count = body->tile_count, .key = body->keys, .mass = body->own + OWN_MASS, .stride = OWN_RECORD, .version = body->version};
 }
 
-static void dofs(const ab_domain *domain, ab_dofs *d)
-{
+static void dofs(const ab_domain *domain, ab_dofs *d) {
     const mpm_body *body = (const mpm_body *)domain;
     *d = (ab_dofs){body->own + OWN_VELOCITY, body->own + OWN_OLD, body->own + OWN_INVERSE, OWN_RECORD, OWN_RECORD, OWN_RECORD};
 }
 
-static int compare_cells(const void *a, const void *b)
-{
+static int compare_cells(const void *a, const void *b) {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return (x > y) - (x < y);
 }
 
 /* Cells of the grid with points in them. Points come sorted by the first node of their stencil, so equal cells mostly follow each other. */
-static size_t count_cells(const mpm_body *body)
-{
+static size_t count_cells(const mpm_body *body) {
     uint64_t *cells = malloc((body->points + 1) * sizeof *cells);
     if (!cells) return 0;
     size_t n = 0;
@@ -269,19 +263,19 @@ static size_t count_cells(const mpm_body *body)
     return unique;
 }
 
-static void plan(const ab_domain *domain, ab_plan_body *p)
-{
+static void plan(const ab_domain *domain, ab_plan_body *p) {
     const mpm_body *body = (const mpm_body *)domain;
     memset(p, 0, sizeof *p);
     p->points = body->points;
     p->tiles = body->tile_count;
     p->cells = count_cells(body);
-    p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES + body->patch_capacity * 8 * PATCH_DOUBLES +
-               body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
+    p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
+               body->patch_capacity * 8 * PATCH_DOUBLES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
-    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s", body->rows.extent >= 0 ? ", domain extent" : "",
-             body->rows.half >= 0 ? ", domain half sizes" : "", body->rows.gradient >= 0 ? ", deformation gradient" : "");
+    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s",
+             body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
+             body->rows.gradient >= 0 ? ", deformation gradient" : "");
     const ab_class *class_ = &body->material->loaded->class_;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         const size_t used = strlen(p->fields);
@@ -296,24 +290,62 @@ static void plan(const ab_domain *domain, ab_plan_body *p)
 }
 
 static const ab_domain_ops OPS = {
-    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress, .ledger = ledger, .node_tiles = node_tiles,
-    .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+    .method = "material-points",
+    .destroy = destroy,
+    .critical_dt = critical_dt,
+    .begin = begin,
+    .finish = finish,
+    .stress = stress,
+    .ledger = ledger,
+    .node_tiles = node_tiles,
+    .trace = mpm_trace,
+    .dofs = dofs,
+    .count = mpm_count,
+    .fields = mpm_fields,
+    .read = mpm_read,
+    .plan = plan,
 };
 static const ab_domain_ops OPS_USF = {
-    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .early = early, .finish = finish, .stress = stress, .ledger = ledger,
-    .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+    .method = "material-points",
+    .destroy = destroy,
+    .critical_dt = critical_dt,
+    .begin = begin,
+    .early = early,
+    .finish = finish,
+    .stress = stress,
+    .ledger = ledger,
+    .node_tiles = node_tiles,
+    .trace = mpm_trace,
+    .dofs = dofs,
+    .count = mpm_count,
+    .fields = mpm_fields,
+    .read = mpm_read,
+    .plan = plan,
 };
 static const ab_domain_ops OPS_MUSL = {
-    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .remap = remap, .stress = stress, .ledger = ledger,
-    .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields, .read = mpm_read, .plan = plan,
+    .method = "material-points",
+    .destroy = destroy,
+    .critical_dt = critical_dt,
+    .begin = begin,
+    .finish = finish,
+    .remap = remap,
+    .stress = stress,
+    .ledger = ledger,
+    .node_tiles = node_tiles,
+    .trace = mpm_trace,
+    .dofs = dofs,
+    .count = mpm_count,
+    .fields = mpm_fields,
+    .read = mpm_read,
+    .plan = plan,
 };
 
 /* Energy and motion before the first step. */
-static void measure(mpm_body *body)
-{
+static void measure(mpm_body *body) {
     for (size_t slot = 0; slot < body->block_count * 8; ++slot) {
         const double *p = mpm_block(body, slot / 8) + slot % 8;
-        const double m = p[8 * ROW_MASS], x = p[8 * ROW_X] + body->origin[0], y = p[8 * (ROW_X + 1)] + body->origin[1], vx = p[8 * ROW_V], vy = p[8 * (ROW_V + 1)];
+        const double m = p[8 * ROW_MASS], x = p[8 * ROW_X] + body->origin[0], y = p[8 * (ROW_X + 1)] + body->origin[1], vx = p[8 * ROW_V],
+                     vy = p[8 * (ROW_V + 1)];
         body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy);
         body->motion.mass += m;
         body->motion.momentum[0] += m * vx;
@@ -327,8 +359,7 @@ static void measure(mpm_body *body)
 }
 
 /* Displacements need the places of the start: only where something asks for them. */
-static bool wants_birth(const mpm_body *body)
-{
+static bool wants_birth(const mpm_body *body) {
     const ab_scene *scene = body->scene;
     for (size_t f = 0; f < scene->output_field_count; ++f)
         if (!strcmp(scene->output_fields[f], "displacement")) return true;
@@ -337,14 +368,18 @@ static bool wants_birth(const mpm_body *body)
     return false;
 }
 
-ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain **domain, ab_report *report)
-{
+ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain **domain, ab_report *report) {
     const ab_body_spec *spec = scene->bodies + index;
     mpm_body *body = calloc(1, sizeof *body);
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
     body->kernel = !strcmp(spec->basis, "linear") ? &mpm_kernel_linear : &mpm_kernel_gimp;
     body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
-    body->domain = (ab_domain){.ops = body->update == MPM_USF ? &OPS_USF : body->update == MPM_USL ? &OPS : &OPS_MUSL, .spec = spec, .dimension = 2, .index = index};
+    body->domain = (ab_domain){.ops = body->update == MPM_USF   ? &OPS_USF
+                                      : body->update == MPM_USL ? &OPS
+                                                                : &OPS_MUSL,
+                               .spec = spec,
+                               .dimension = 2,
+                               .index = index};
     body->scene = scene;
     body->flip = spec->flip;
     body->contiguous = spec->contiguous;
@@ -361,8 +396,10 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     ab_fill *fill = NULL;
     ab_status status = AB_OK;
     if (body->rows.states > MAX_STATE)
-        status = ab_report_error(report, body->material->mark, "material '%s' keeps %d numbers per point; at most %d are possible", body->material->name, body->rows.states, MAX_STATE);
-    if (status == AB_OK) status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
+        status = ab_report_error(report, body->material->mark, "material '%s' keeps %d numbers per point; at most %d are possible",
+                                 body->material->name, body->rows.states, MAX_STATE);
+    if (status == AB_OK)
+        status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
@@ -371,7 +408,8 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     if (status == AB_OK && wants_birth(body)) {
         body->birth = malloc(2 * fill->count * sizeof *body->birth);
         if (!body->birth) status = ab_report_failure(report, "no memory for the initial places of body '%s'", spec->name);
-        for (size_t p = 0; body->birth && p < fill->count; ++p) body->birth[2 * p] = fill->x[p] - body->origin[0], body->birth[2 * p + 1] = fill->y[p] - body->origin[1];
+        for (size_t p = 0; body->birth && p < fill->count; ++p)
+            body->birth[2 * p] = fill->x[p] - body->origin[0], body->birth[2 * p + 1] = fill->y[p] - body->origin[1];
     }
     if (status == AB_OK) status = mpm_fields_create(body, report);
     ab_fill_destroy(fill);

@@ -34,7 +34,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     bool turns;           /* some state is a vector or a tensor */
 } mpm_rows;
 
-typedef struct mpm_sums { /* of one tile, one step */
+typedef struct mpm_sums {                                 /* of one tile, one step */
     double mass, kinetic, momentum[2], angular, first[2]; /* first: sum m x */
     double potential, strain, plastic;                    /* increments */
     double low[2], high[2];                               /* bounds of the new positions */
@@ -58,9 +58,10 @@ typedef struct mpm_load { /* a piece of outline with a traction */
     double half[2];       /* m, from there to its end */
 } mpm_load;
 
-typedef struct mpm_weights { /* of a block: values and gradients (1/m) of the 2 or 3 nodes per direction, and the first of them in the patch */
+typedef struct
+    mpm_weights { /* of a block: values and gradients (1/m) of the 2 or 3 nodes per direction, and the first of them in the patch */
     v8 n[2][3], g[2][3];
-    int32_t node[8];      /* patch node (j+1)*PATCH + i+1 for node (i, j) of the tile */
+    int32_t node[8]; /* patch node (j+1)*PATCH + i+1 for node (i, j) of the tile */
 } mpm_weights;
 
 typedef struct mpm_body mpm_body;
@@ -71,7 +72,8 @@ typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
     void (*weights)(const mpm_body *, const mpm_tile *, const double *block, mpm_weights *);
     void (*scatter)(mpm_body *, size_t tile);
     void (*finish)(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
-    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *); /* -1, or the block near which the material gave up */
+    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance,
+                  mpm_sums *); /* -1, or the block near which the material gave up */
 } mpm_kernel;
 extern const mpm_kernel mpm_kernel_linear, mpm_kernel_gimp;
 
@@ -88,47 +90,47 @@ struct mpm_body {
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 
     mpm_rows rows;
-    double *blocks;             /* block b begins at blocks + b*8*rows.count */
-    uint64_t *ids;              /* of point b*8 + l; UINT64_MAX for a massless copy */
+    double *blocks; /* block b begins at blocks + b*8*rows.count */
+    uint64_t *ids;  /* of point b*8 + l; UINT64_MAX for a massless copy */
     size_t block_count, block_capacity;
-    double *spare_blocks;       /* the other half of a sort */
+    double *spare_blocks; /* the other half of a sort */
     uint64_t *spare_ids;
     size_t spare_capacity;
-    size_t points;              /* alive */
-    size_t born;                /* ids given out: 0 .. born-1 */
-    double *birth;              /* (x, y) by id at the start, from the grid's corner; only when displacements are asked for */
+    size_t points; /* alive */
+    size_t born;   /* ids given out: 0 .. born-1 */
+    double *birth; /* (x, y) by id at the start, from the grid's corner; only when displacements are asked for */
 
     mpm_tile *tiles;
-    uint64_t *keys;             /* of the tiles, ascending */
+    uint64_t *keys; /* of the tiles, ascending */
     size_t tile_count, tile_capacity;
-    double *own;                /* OWN_RECORD * AB_TILE_NODES per tile */
-    double *patches;            /* PATCH_DOUBLES per tile with points */
+    double *own;     /* OWN_RECORD * AB_TILE_NODES per tile */
+    double *patches; /* PATCH_DOUBLES per tile with points */
     size_t own_capacity, patch_capacity, patch_count;
-    mpm_sums *sums;             /* per tile */
+    mpm_sums *sums; /* per tile */
     size_t sums_capacity;
-    uint64_t version;           /* of the tile list */
-    bool scattered;             /* the patches hold this step's points already */
+    uint64_t version; /* of the tile list */
+    bool scattered;   /* the patches hold this step's points already */
     bool sort_due;
 
     const ab_material_spec *material;
-    void *self;                 /* the plugin's instance */
+    void *self; /* the plugin's instance */
     ab_service service;
-    double wave_speed;          /* largest, m/s */
-    bool ask_wave_speed;        /* in this step's stress pass */
-    double modulus;             /* P-wave modulus, Pa */
-    double largest_speed;       /* m/s */
-    double point_mass;          /* kg, largest */
+    double wave_speed;    /* largest, m/s */
+    bool ask_wave_speed;  /* in this step's stress pass */
+    double modulus;       /* P-wave modulus, Pa */
+    double largest_speed; /* m/s */
+    double point_mass;    /* kg, largest */
     char limit[128];
 
     mpm_load *loads;
     size_t load_count;
-    uint32_t *slot;             /* by id, block*8 + lane; only with loads */
+    uint32_t *slot; /* by id, block*8 + lane; only with loads */
 
-    ab_energy energy;           /* totals so far */
-    double last_strain;         /* J: what the last step added to energy.strain */
+    ab_energy energy;   /* totals so far */
+    double last_strain; /* J: what the last step added to energy.strain */
     ab_motion motion;
 
-    ab_field *fields;           /* that can be written */
+    ab_field *fields; /* that can be written */
     size_t field_count;
 
     /* what a contact finder was last shown */
@@ -140,33 +142,34 @@ struct mpm_body {
 ab_status mpm_create(const ab_scene *, size_t body, int threads, ab_domain **, ab_report *);
 
 /* points.c */
-void mpm_rows_plan(mpm_body *);                                   /* which rows this scene needs */
+void mpm_rows_plan(mpm_body *); /* which rows this scene needs */
 ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
-ab_status mpm_points_sort(mpm_body *, ab_report *);                /* after begin's bounds were broken, or the first time */
+ab_status mpm_points_sort(mpm_body *, ab_report *); /* after begin's bounds were broken, or the first time */
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
 
 /* material.c: the material's instance, its start, and how its states turn. */
 ab_status mpm_material_start(mpm_body *, ab_report *);
-int mpm_state_components(uint32_t shape);                          /* numbers that a state of this enum ab_shape keeps per point */
+int mpm_state_components(uint32_t shape); /* numbers that a state of this enum ab_shape keeps per point */
 void mpm_turn_state(const ab_class *, const double *state, v8 cosine, v8 sine, double *turned); /* rows of eight points; plane rotation */
 
 /* tiles.c */
-ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count, ab_report *); /* the tiles of `filled` (ascending) and their neighbours */
-long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);                     /* place, or -1 */
+ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
+                          ab_report *);                               /* the tiles of `filled` (ascending) and their neighbours */
+long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key); /* place, or -1 */
 
 /* grid.c */
-void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);  /* old velocity, trial velocity */
-void mpm_grid_assemble_remap(mpm_body *);                          /* velocity of the points mapped back */
+void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);              /* old velocity, trial velocity */
+void mpm_grid_assemble_remap(mpm_body *);                                      /* velocity of the points mapped back */
 void mpm_grid_fetch_velocity(const mpm_body *, size_t tile, double *pairs);    /* a patch of velocities */
 void mpm_grid_fetch_motion(const mpm_body *, size_t tile, double *quadruples); /* a patch of velocities and their changes in this step */
-double mpm_grid_damp(mpm_body *, double factor);                    /* after contact; energy taken, J */
-void mpm_grid_limit_light(mpm_body *);                             /* USL: light nodes take their old velocity for the strain */
+double mpm_grid_damp(mpm_body *, double factor);                               /* after contact; energy taken, J */
+void mpm_grid_limit_light(mpm_body *);                                         /* USL: light nodes take their old velocity for the strain */
 
 /* loads.c */
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);
 void mpm_loads_scatter(mpm_body *, const ab_step *);
 void mpm_loads_work(mpm_body *, const ab_step *);
-void mpm_loads_follow(mpm_body *, const ab_step *);                 /* with the velocities that strain the points, before they are strained */
+void mpm_loads_follow(mpm_body *, const ab_step *); /* with the velocities that strain the points, before they are strained */
 
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);

@@ -6,14 +6,19 @@
 #include "mpm/body.h"
 
 static const ab_field FIELDS[] = {
-    {"id", "1", 1, ""},           {"position", "m", 2, "x y"},          {"velocity", "m s-1", 2, "x y"}, {"displacement", "m", 2, "x y"},
-    {"mass", "kg m-1", 1, ""},    {"volume", "m2", 1, ""},              {"stress", "Pa", 4, "xx yy zz xy"}, {"deformation-gradient", "1", 4, "xx xy yx yy"},
+    {"id", "1", 1, ""},
+    {"position", "m", 2, "x y"},
+    {"velocity", "m s-1", 2, "x y"},
+    {"displacement", "m", 2, "x y"},
+    {"mass", "kg m-1", 1, ""},
+    {"volume", "m2", 1, ""},
+    {"stress", "Pa", 4, "xx yy zz xy"},
+    {"deformation-gradient", "1", 4, "xx xy yx yy"},
 };
 enum { FIXED_FIELDS = sizeof FIELDS / sizeof *FIELDS };
 
 /* The list is made once per body; the material's states stand behind the fixed ones. */
-ab_status mpm_fields_create(mpm_body *body, ab_report *report)
-{
+ab_status mpm_fields_create(mpm_body *body, ab_report *report) {
     const ab_class *class_ = &body->material->loaded->class_;
     body->fields = malloc((FIXED_FIELDS + class_->nstate) * sizeof *body->fields);
     if (!body->fields) return ab_report_failure(report, "no memory for the list of fields of body '%s'", body->domain.spec->name);
@@ -23,12 +28,12 @@ ab_status mpm_fields_create(mpm_body *body, ab_report *report)
         body->fields[body->field_count++] = FIELDS[f];
     }
     for (uint32_t s = 0; s < class_->nstate; ++s)
-        body->fields[body->field_count++] = (ab_field){class_->state[s].name, class_->state[s].unit, mpm_state_components(class_->state[s].shape), ""};
+        body->fields[body->field_count++] =
+            (ab_field){class_->state[s].name, class_->state[s].unit, mpm_state_components(class_->state[s].shape), ""};
     return AB_OK;
 }
 
-const ab_field *mpm_fields(const ab_domain *domain, size_t *count)
-{
+const ab_field *mpm_fields(const ab_domain *domain, size_t *count) {
     const mpm_body *body = (const mpm_body *)domain;
     *count = body->field_count;
     return body->fields;
@@ -37,8 +42,7 @@ const ab_field *mpm_fields(const ab_domain *domain, size_t *count)
 size_t mpm_count(const ab_domain *domain) { return ((const mpm_body *)domain)->points; }
 
 /* First row of a field that stands in the blocks as it is; -1 for one that does not. */
-static int row_of(const mpm_body *body, const char *field)
-{
+static int row_of(const mpm_body *body, const char *field) {
     if (!strcmp(field, "velocity")) return ROW_V;
     if (!strcmp(field, "mass")) return ROW_MASS;
     if (!strcmp(field, "volume")) return ROW_VOLUME;
@@ -53,8 +57,7 @@ static int row_of(const mpm_body *body, const char *field)
     return -1;
 }
 
-ab_status mpm_read(const ab_domain *domain, const char *field, double *values, ab_report *report)
-{
+ab_status mpm_read(const ab_domain *domain, const char *field, double *values, ab_report *report) {
     const mpm_body *body = (const mpm_body *)domain;
     int components = 0;
     for (size_t f = 0; f < body->field_count; ++f)

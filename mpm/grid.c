@@ -6,11 +6,11 @@
 
 /* sum[node*lanes + c]: what the nine patches around hold of this tile's own nodes. A patch reaches one node before and three nodes behind its tile. The
  * tile's own patch first, then its neighbours', always in one order. */
-static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum)
-{
+static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum) {
     if (tile->patch >= 0) {
         const double *patch = body->patches + (size_t)tile->patch * PATCH_DOUBLES;
-        for (int j = 0; j < AB_TILE; ++j) memcpy(sum + lanes * j * AB_TILE, patch + lanes * ((j + 1) * PATCH + 1), sizeof(double) * (size_t)(lanes * AB_TILE));
+        for (int j = 0; j < AB_TILE; ++j)
+            memcpy(sum + lanes * j * AB_TILE, patch + lanes * ((j + 1) * PATCH + 1), sizeof(double) * (size_t)(lanes * AB_TILE));
     } else
         memset(sum, 0, sizeof(double) * (size_t)lanes * AB_TILE_NODES);
     for (int s = 0; s < 9; ++s) {
@@ -33,8 +33,7 @@ static inline __attribute__((always_inline)) void add_patches(const mpm_body *bo
 }
 
 /* 1 where the sides leave the direction of this node free, 0 where they hold it. Nodes beyond a side are held like those on it. */
-static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double free_[2])
-{
+static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double free_[2]) {
     const ab_scene *scene = body->scene;
     const int i = tile->tx * AB_TILE + n % AB_TILE, j = tile->ty * AB_TILE + n / AB_TILE;
     const bool at[AB_SIDES] = {i <= 0, i >= scene->grid_cells[0], j <= 0, j >= scene->grid_cells[1]};
@@ -46,8 +45,7 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
     }
 }
 
-void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
-{
+void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
     const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
     const double dt = forces ? step->dt : 0.0;
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
@@ -78,8 +76,7 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces)
     }
 }
 
-void mpm_grid_assemble_remap(mpm_body *body)
-{
+void mpm_grid_assemble_remap(mpm_body *body) {
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
@@ -94,8 +91,7 @@ void mpm_grid_assemble_remap(mpm_body *body)
 }
 
 /* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. */
-static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, int lanes, double *patch)
-{
+static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, int lanes, double *patch) {
     const mpm_tile *tile = body->tiles + number;
     for (int s = 0; s < 9; ++s) {
         const int dx = s % 3 - 1, dy = s / 3 - 1;
@@ -126,8 +122,7 @@ static const double LIGHT = 1e-4; /* of a point's mass: a node with less is ligh
 /* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance, here all that changed the node's velocity
  * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Light nodes are
  * left alone: a finite stress throws them about by any amount, which the points hardly see. Returns the energy taken, J. */
-double mpm_grid_damp(mpm_body *body, double factor)
-{
+double mpm_grid_damp(mpm_body *body, double factor) {
     double taken = 0.0;
     for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
         double *own = body->own + n * OWN_RECORD;
@@ -144,8 +139,7 @@ double mpm_grid_damp(mpm_body *body, double factor)
 
 /* A node with less than LIGHT of a point's mass is accelerated without bound by a finite stress; its momentum has gone to the points already, so the
  * strain may take the velocity it had before. Only USL asks for it: USF and MUSL strain with momentum over mass, an average that is bounded. */
-void mpm_grid_limit_light(mpm_body *body)
-{
+void mpm_grid_limit_light(mpm_body *body) {
     const double limit = LIGHT * body->point_mass;
     for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
         double *own = body->own + n * OWN_RECORD;

@@ -9,8 +9,7 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *report)
-{
+ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *report) {
     const ab_scene *scene = body->scene;
     size_t count = 0;
     for (int pass = 0; pass < 2; ++pass) {
@@ -22,20 +21,25 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
                 if (!ab_where_holds(&scene->loads[k].where, fill, fill->surface + s)) continue;
                 if (pass) {
                     const ab_surface *piece = fill->surface + s;
-                    const double arm[2] = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]}, half = 0.5 * piece->length;
-                    body->loads[count] = (mpm_load){piece->point, (uint32_t)k, piece->length, {arm[0], arm[1]}, {-half * piece->normal[1], half * piece->normal[0]}};
+                    const double arm[2] = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
+                                 half = 0.5 * piece->length;
+                    body->loads[count] = (mpm_load){
+                        piece->point, (uint32_t)k, piece->length, {arm[0], arm[1]}, {-half * piece->normal[1], half * piece->normal[0]}};
                 }
                 ++count;
             }
             if (count == before)
-                return ab_report_error(report, scene->loads[k].mark, "loads[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", k,
-                                       body->domain.spec->name);
+                return ab_report_error(
+                    report, scene->loads[k].mark,
+                    "loads[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", k,
+                    body->domain.spec->name);
         }
         if (count == 0) return AB_OK;
         if (!pass) {
             body->loads = malloc(count * sizeof *body->loads);
             body->slot = malloc((body->born + 1) * sizeof *body->slot);
-            if (!body->loads || !body->slot) return ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
+            if (!body->loads || !body->slot)
+                return ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
         }
     }
     body->load_count = count;
@@ -45,34 +49,39 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
 }
 
 /* Tile that owns a block: tiles with points hold ascending runs. */
-static size_t tile_of_block(const mpm_body *body, uint32_t block)
-{
+static size_t tile_of_block(const mpm_body *body, uint32_t block) {
     size_t low = 0, high = body->tile_count;
     size_t found = 0;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         size_t filled = middle;
         while (filled < high && body->tiles[filled].patch < 0) ++filled;
-        if (filled == high) high = middle;
-        else if (body->tiles[filled].first <= block) found = filled, low = filled + 1;
-        else high = middle;
+        if (filled == high)
+            high = middle;
+        else if (body->tiles[filled].first <= block)
+            found = filled, low = filled + 1;
+        else
+            high = middle;
     }
     return found;
 }
 
-typedef struct reach { double n[9], g[9][2]; size_t node[9]; int count; const mpm_tile *tile; } reach;
+typedef struct reach {
+    double n[9], g[9][2];
+    size_t node[9];
+    int count;
+    const mpm_tile *tile;
+} reach;
 
 /* Integral of the hat function from -1 to u. */
-static double hat_integral(double u)
-{
+static double hat_integral(double u) {
     if (u <= -1.0) return 0.0;
     if (u >= 1.0) return 1.0;
     return u < 0.0 ? 0.5 * (1.0 + u) * (1.0 + u) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
 }
 
 /* Hat functions of three nodes in a row averaged over [s-l, s+l]; s in cells from the first node, l kept so small that they add up to 1. */
-static void average_hats(double s, double l, double n[3])
-{
+static void average_hats(double s, double l, double n[3]) {
     s = fmin(fmax(s, 0.0), 2.0);
     l = fmin(l, fmin(s, 2.0 - s));
     for (int i = 0; i < 3; ++i) {
@@ -82,8 +91,7 @@ static void average_hats(double s, double l, double n[3])
 }
 
 /* The nodes that carry a load: values, gradients at the point under it, and places in its tile's patch. */
-static reach reach_of(const mpm_body *body, const mpm_load *load)
-{
+static reach reach_of(const mpm_body *body, const mpm_load *load) {
     const uint32_t slot = body->slot[load->id];
     reach r = {.count = 0};
     r.tile = body->tiles + tile_of_block(body, slot / 8);
@@ -95,7 +103,9 @@ static reach reach_of(const mpm_body *body, const mpm_load *load)
     double n[2][3];
     for (int c = 0; c < 2; ++c) {
         for (int i = 0; i < nodes; ++i) n[c][i] = w.n[c][i][l];
-        if (nodes == 3) average_hats((block[8 * (ROW_X + c) + l] + load->arm[c]) * body->inverse_h - first[c], fabs(load->half[c]) * body->inverse_h, n[c]);
+        if (nodes == 3)
+            average_hats((block[8 * (ROW_X + c) + l] + load->arm[c]) * body->inverse_h - first[c], fabs(load->half[c]) * body->inverse_h,
+                         n[c]);
     }
     for (int j = 0; j < nodes; ++j)
         for (int i = 0; i < nodes; ++i) {
@@ -108,21 +118,18 @@ static reach reach_of(const mpm_body *body, const mpm_load *load)
 }
 
 /* The record of a patch's node, where its tile keeps it. */
-static const double *own_of(const mpm_body *body, const mpm_tile *tile, size_t node)
-{
+static const double *own_of(const mpm_body *body, const mpm_tile *tile, size_t node) {
     const int pi = (int)(node % PATCH) - 1, pj = (int)(node / PATCH) - 1;
     const int dx = pi < 0 ? -1 : pi >= AB_TILE ? 1 : 0, dy = pj < 0 ? -1 : pj >= AB_TILE ? 1 : 0;
     const int32_t from = tile->around[(dy + 1) * 3 + dx + 1];
     return body->own + ((size_t)from * AB_TILE_NODES + (size_t)((pj - dy * AB_TILE) * AB_TILE + pi - dx * AB_TILE)) * OWN_RECORD;
 }
 
-static void load_force(const mpm_body *body, const mpm_load *load, double time, double force[2])
-{
+static void load_force(const mpm_body *body, const mpm_load *load, double time, double force[2]) {
     for (int c = 0; c < 2; ++c) force[c] = load->length * ab_number_at(body->scene->loads[load->spec].traction + c, time, 0.0, 0.0, 0.0);
 }
 
-void mpm_loads_scatter(mpm_body *body, const ab_step *step)
-{
+void mpm_loads_scatter(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
         if (body->slot[body->loads[k].id] == UINT32_MAX) continue;
         double force[2];
@@ -134,8 +141,7 @@ void mpm_loads_scatter(mpm_body *body, const ab_step *step)
     }
 }
 
-void mpm_loads_work(mpm_body *body, const ab_step *step)
-{
+void mpm_loads_work(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
         if (body->slot[body->loads[k].id] == UINT32_MAX) continue;
         double force[2];
@@ -143,14 +149,14 @@ void mpm_loads_work(mpm_body *body, const ab_step *step)
         const reach r = reach_of(body, body->loads + k);
         for (int i = 0; i < r.count; ++i) {
             const double *own = own_of(body, r.tile, r.node[i]);
-            for (int c = 0; c < 2; ++c) body->energy.external += step->dt * r.n[i] * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
+            for (int c = 0; c < 2; ++c)
+                body->energy.external += step->dt * r.n[i] * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
         }
     }
 }
 
 /* Arms stretch and turn as the domains of their points do; domains of fixed size have fixed arms. */
-void mpm_loads_follow(mpm_body *body, const ab_step *step)
-{
+void mpm_loads_follow(mpm_body *body, const ab_step *step) {
     if (!body->contiguous) return;
     for (size_t k = 0; k < body->load_count; ++k) {
         mpm_load *load = body->loads + k;

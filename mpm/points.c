@@ -6,8 +6,7 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-void mpm_rows_plan(mpm_body *body)
-{
+void mpm_rows_plan(mpm_body *body) {
     const ab_class *class_ = &body->material->loaded->class_;
     mpm_rows rows = {.count = ROW_OTHERS, .extent = -1, .half = -1, .inverse_half = -1, .gradient = -1, .state = -1};
     bool gap = false; /* a finder that looks at near points needs the size of a point in every direction */
@@ -20,7 +19,8 @@ void mpm_rows_plan(mpm_body *body)
     if (gap || (gimp && body->contiguous)) rows.extent = rows.count, rows.count += 3;
     if (gimp) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
-    for (uint32_t s = 0; s < class_->nstate; ++s) rows.states += mpm_state_components(class_->state[s].shape), rows.turns = rows.turns || class_->state[s].shape != AB_SCALAR;
+    for (uint32_t s = 0; s < class_->nstate; ++s)
+        rows.states += mpm_state_components(class_->state[s].shape), rows.turns = rows.turns || class_->state[s].shape != AB_SCALAR;
     if (rows.states) rows.state = rows.count, rows.count += rows.states;
     body->rows = rows;
 }
@@ -29,39 +29,38 @@ void mpm_rows_plan(mpm_body *body)
 static int32_t first_node(const mpm_body *body, double cells) { return (int32_t)floor(body->kernel->nodes == 3 ? cells - 0.5 : cells); }
 static int32_t tile_of(int32_t node) { return node >= 0 ? node / AB_TILE : -((AB_TILE - 1 - node) / AB_TILE); }
 
-typedef struct place { uint64_t key; uint32_t cell, index; } place;
+typedef struct place {
+    uint64_t key;
+    uint32_t cell, index;
+} place;
 
-static int compare_places(const void *a, const void *b)
-{
+static int compare_places(const void *a, const void *b) {
     const place *x = a, *y = b;
     if (x->key != y->key) return x->key < y->key ? -1 : 1;
     if (x->cell != y->cell) return x->cell < y->cell ? -1 : 1;
     return (x->index > y->index) - (x->index < y->index);
 }
 
-static ab_status no_memory(const mpm_body *body, size_t points, ab_report *report)
-{
-    return ab_report_failure(report, "body '%s': no memory for %zu points of %d bytes; use fewer points per cell or larger cells", body->domain.spec->name, points,
-                             body->rows.count * 8);
+static ab_status no_memory(const mpm_body *body, size_t points, ab_report *report) {
+    return ab_report_failure(report, "body '%s': no memory for %zu points of %d bytes; use fewer points per cell or larger cells",
+                             body->domain.spec->name, points, body->rows.count * 8);
 }
 
-static ab_status reserve_blocks(mpm_body *body, size_t blocks, ab_report *report)
-{
+static ab_status reserve_blocks(mpm_body *body, size_t blocks, ab_report *report) {
     size_t ids = body->block_capacity;
     if (!ab_memory_grow((void **)&body->ids, &ids, blocks, 8 * sizeof *body->ids)) return no_memory(body, blocks * 8, report);
-    if (!ab_memory_grow((void **)&body->blocks, &body->block_capacity, blocks, 64 * (size_t)body->rows.count)) return no_memory(body, blocks * 8, report);
+    if (!ab_memory_grow((void **)&body->blocks, &body->block_capacity, blocks, 64 * (size_t)body->rows.count))
+        return no_memory(body, blocks * 8, report);
     return AB_OK;
 }
 
 /* Copies lane `from` of a block into another block's lane; every row. */
-static void copy_point(double *to, int to_lane, const double *from, int from_lane, int rows)
-{
+static void copy_point(double *to, int to_lane, const double *from, int from_lane, int rows) {
     for (int r = 0; r < rows; ++r) to[8 * r + to_lane] = from[8 * r + from_lane];
 }
 
 /* Fills the last block of a tile with massless copies of its last point, so that every lane holds numbers a material can live with. */
-static void pad_block(const mpm_body *body, double *block, uint64_t *ids, int used)
-{
+static void pad_block(const mpm_body *body, double *block, uint64_t *ids, int used) {
     for (int l = used; l < 8; ++l) {
         copy_point(block, l, block, used - 1, body->rows.count);
         block[8 * ROW_MASS + l] = 0.0;
@@ -70,8 +69,7 @@ static void pad_block(const mpm_body *body, double *block, uint64_t *ids, int us
     }
 }
 
-ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *report)
-{
+ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *report) {
     const size_t count = fill->count;
     place *places = malloc((count + 1) * sizeof *places);
     uint64_t *filled = malloc((count + 1) * sizeof *filled);
@@ -80,7 +78,8 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
         return no_memory(body, count, report);
     }
     for (size_t p = 0; p < count; ++p) {
-        const int32_t i = first_node(body, (fill->x[p] - body->origin[0]) * body->inverse_h), j = first_node(body, (fill->y[p] - body->origin[1]) * body->inverse_h);
+        const int32_t i = first_node(body, (fill->x[p] - body->origin[0]) * body->inverse_h),
+                      j = first_node(body, (fill->y[p] - body->origin[1]) * body->inverse_h);
         const int32_t tx = tile_of(i), ty = tile_of(j);
         places[p] = (place){ab_tile_key(tx, ty), (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE), (uint32_t)p};
     }
@@ -149,8 +148,7 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
 /* ---- sorting ------------------------------------------------------------------------------------------------------------ */
 
 /* For each point of an old tile: which of the nine tiles around it now holds it, and in which cell. */
-static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *moves, uint32_t counts[9])
-{
+static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *moves, uint32_t counts[9]) {
     memset(counts, 0, 9 * sizeof *counts);
     for (uint32_t b = 0; b < tile->blocks; ++b) {
         const double *block = mpm_block(body, tile->first + b);
@@ -161,11 +159,13 @@ static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *mov
                 continue;
             }
             const double x = block[8 * ROW_X + l], y = block[8 * (ROW_X + 1) + l];
-            if (x < 0.0 || y < 0.0 || x > body->span[0] || y > body->span[1]) { /* left through an outflow side; finish has stopped every other */
+            if (x < 0.0 || y < 0.0 || x > body->span[0] ||
+                y > body->span[1]) { /* left through an outflow side; finish has stopped every other */
                 moves[slot] = UINT16_MAX;
                 continue;
             }
-            const int32_t i = first_node(body, x * body->inverse_h) - tile->tx * AB_TILE, j = first_node(body, y * body->inverse_h) - tile->ty * AB_TILE;
+            const int32_t i = first_node(body, x * body->inverse_h) - tile->tx * AB_TILE,
+                          j = first_node(body, y * body->inverse_h) - tile->ty * AB_TILE;
             const int dx = i < 0 ? -1 : i >= AB_TILE ? 1 : 0, dy = j < 0 ? -1 : j >= AB_TILE ? 1 : 0;
             const int code = (dy + 1) * 3 + dx + 1, cell = (j - dy * AB_TILE) * AB_TILE + i - dx * AB_TILE;
             moves[slot] = (uint16_t)(code * AB_TILE_NODES + cell);
@@ -175,9 +175,8 @@ static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *mov
 }
 
 /* Copies into a new tile the points that now belong to it, from the nine old tiles around its place, sorted by cell. */
-static void collect(const mpm_body *body, const mpm_tile *target, const mpm_tile *old_tiles, const long sources[9], const uint32_t (*counts)[9], const uint16_t *moves,
-                    double *blocks, uint64_t *ids)
-{
+static void collect(const mpm_body *body, const mpm_tile *target, const mpm_tile *old_tiles, const long sources[9],
+                    const uint32_t (*counts)[9], const uint16_t *moves, double *blocks, uint64_t *ids) {
     uint32_t start[AB_TILE_NODES + 1] = {0};
     for (int s = 0; s < 9; ++s) { /* the tile at offset s from us holds points that went the opposite way */
         const int code = 8 - s;
@@ -204,14 +203,12 @@ static void collect(const mpm_body *body, const mpm_tile *target, const mpm_tile
     if (used) pad_block(body, blocks + last * 8 * (size_t)rows, ids + last * 8, used);
 }
 
-static int compare_keys(const void *a, const void *b)
-{
+static int compare_keys(const void *a, const void *b) {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return (x > y) - (x < y);
 }
 
-ab_status mpm_points_sort(mpm_body *body, ab_report *report)
-{
+ab_status mpm_points_sort(mpm_body *body, ab_report *report) {
     const size_t old_count = body->tile_count;
     mpm_tile *old_tiles = malloc((old_count + 1) * sizeof *old_tiles);
     uint64_t *old_keys = malloc((old_count + 1) * sizeof *old_keys), *filled = malloc((9 * old_count + 1) * sizeof *filled);
@@ -266,7 +263,8 @@ ab_status mpm_points_sort(mpm_body *body, ab_report *report)
     }
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0) collect(body, body->tiles + k, old_tiles, sources[k], (const uint32_t(*)[9])counts, moves, body->spare_blocks, body->spare_ids);
+        if (body->tiles[k].patch >= 0)
+            collect(body, body->tiles + k, old_tiles, sources[k], (const uint32_t(*)[9])counts, moves, body->spare_blocks, body->spare_ids);
 
     double *swapped = body->blocks;
     body->blocks = body->spare_blocks;

@@ -5,37 +5,36 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key)
-{
+long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key) {
     size_t low = 0, high = count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (keys[middle] < key) low = middle + 1;
-        else high = middle;
+        if (keys[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
     }
     return low < count && keys[low] == key ? (long)low : -1;
 }
 
-static int compare_keys(const void *a, const void *b)
-{
+static int compare_keys(const void *a, const void *b) {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return (x > y) - (x < y);
 }
 
 /* True when a node of the tile lies on or beyond a side that holds it. */
-static bool tile_is_held(const mpm_body *body, int32_t tx, int32_t ty)
-{
+static bool tile_is_held(const mpm_body *body, int32_t tx, int32_t ty) {
     const ab_scene *scene = body->scene;
     const ab_side_kind *side = scene->side;
     const int last[2] = {scene->grid_cells[0], scene->grid_cells[1]};
-    const bool held[4] = {tx * AB_TILE <= 0, tx * AB_TILE + AB_TILE - 1 >= last[0], ty * AB_TILE <= 0, ty * AB_TILE + AB_TILE - 1 >= last[1]};
+    const bool held[4] = {tx * AB_TILE <= 0, tx * AB_TILE + AB_TILE - 1 >= last[0], ty * AB_TILE <= 0,
+                          ty * AB_TILE + AB_TILE - 1 >= last[1]};
     for (int s = 0; s < AB_SIDES; ++s)
         if (held[s] && (side[s] == AB_SIDE_ROLLER || side[s] == AB_SIDE_FIXED)) return true;
     return false;
 }
 
-ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, ab_report *report)
-{
+ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, ab_report *report) {
     uint64_t *all = malloc((9 * count + 1) * sizeof *all);
     if (!all) return ab_report_failure(report, "body '%s': no memory for %zu tiles", body->domain.spec->name, 9 * count);
     size_t n = 0;
@@ -65,7 +64,8 @@ ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, 
     body->patch_count = count;
     for (size_t k = 0; k < unique; ++k) {
         mpm_tile *tile = body->tiles + k;
-        *tile = (mpm_tile){.tx = ab_tile_x(body->keys[k]), .ty = ab_tile_y(body->keys[k]), .patch = (int32_t)mpm_tile_find(filled, count, body->keys[k])};
+        *tile = (mpm_tile){
+            .tx = ab_tile_x(body->keys[k]), .ty = ab_tile_y(body->keys[k]), .patch = (int32_t)mpm_tile_find(filled, count, body->keys[k])};
         tile->held = tile_is_held(body, tile->tx, tile->ty);
         for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx)

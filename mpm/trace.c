@@ -5,7 +5,10 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-typedef struct near_point { uint32_t node; uint32_t slot; } near_point;
+typedef struct near_point {
+    uint32_t node;
+    uint32_t slot;
+} near_point;
 
 struct mpm_trace {
     size_t capacity, near_capacity, entry_capacity, tile_capacity;
@@ -16,29 +19,26 @@ struct mpm_trace {
     uint64_t *key;
     double *near_position, *near_extent;
     near_point *entries;
-    uint32_t *stamp;       /* per tile: candidate in call number stamp */
+    uint32_t *stamp; /* per tile: candidate in call number stamp */
     uint32_t *tile_list;
     uint32_t call;
 };
 
-void mpm_trace_destroy(struct mpm_trace *t)
-{
+void mpm_trace_destroy(struct mpm_trace *t) {
     if (!t) return;
     free(t->position), free(t->mass), free(t->mass_gradient), free(t->area_vector), free(t->near_start), free(t->stencil_start);
     free(t->stencil_dof), free(t->stencil_weight), free(t->key), free(t->near_position), free(t->near_extent), free(t->entries);
     free(t->stamp), free(t->tile_list), free(t);
 }
 
-static bool grow(void *pointer, size_t count, size_t size)
-{
+static bool grow(void *pointer, size_t count, size_t size) {
     void **p = pointer;
     void *more = realloc(*p, count * size);
     if (more) *p = more;
     return more != NULL;
 }
 
-static bool reserve(mpm_body *body, size_t count)
-{
+static bool reserve(mpm_body *body, size_t count) {
     if (!body->trace) body->trace = calloc(1, sizeof *body->trace);
     struct mpm_trace *t = body->trace;
     if (!t) return false;
@@ -51,8 +51,9 @@ static bool reserve(mpm_body *body, size_t count)
     }
     if (count < t->capacity) return true;
     const size_t n = (2 * count + 64) & ~(size_t)7;
-    if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->mass, n, sizeof(double)) || !grow(&t->mass_gradient, 2 * n, sizeof(double)) ||
-        !grow(&t->area_vector, 2 * n, sizeof(double)) || !grow(&t->near_start, n + 1, sizeof(size_t)) || !grow(&t->stencil_start, n + 1, sizeof(size_t)) ||
+    if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->mass, n, sizeof(double)) ||
+        !grow(&t->mass_gradient, 2 * n, sizeof(double)) || !grow(&t->area_vector, 2 * n, sizeof(double)) ||
+        !grow(&t->near_start, n + 1, sizeof(size_t)) || !grow(&t->stencil_start, n + 1, sizeof(size_t)) ||
         !grow(&t->stencil_dof, n, sizeof(uint32_t)) || !grow(&t->stencil_weight, n, sizeof(double)) || !grow(&t->key, n, sizeof(uint64_t)))
         return false;
     t->capacity = n;
@@ -60,13 +61,11 @@ static bool reserve(mpm_body *body, size_t count)
 }
 
 /* The tiles whose points can reach a wanted node: its own and the eight around it. Ascending. */
-static int compare_numbers(const void *a, const void *b)
-{
+static int compare_numbers(const void *a, const void *b) {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);
 }
-static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t count)
-{
+static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t count) {
     struct mpm_trace *t = body->trace;
     ++t->call;
     size_t tiles = 0;
@@ -85,8 +84,7 @@ static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t coun
 }
 
 /* Number of the wanted node + 1 at each place of a tile's patch, 0 elsewhere. Nodes are ascending, so those of a tile are a run. */
-static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t count, uint32_t wanted[PATCH_NODES])
-{
+static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t count, uint32_t wanted[PATCH_NODES]) {
     memset(wanted, 0, PATCH_NODES * sizeof *wanted);
     bool any = false;
     for (int s = 0; s < 9; ++s) {
@@ -95,11 +93,14 @@ static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t 
         size_t low = 0, high = count;
         while (low < high) {
             const size_t middle = (low + high) / 2;
-            if (nodes[middle] < first) low = middle + 1;
-            else high = middle;
+            if (nodes[middle] < first)
+                low = middle + 1;
+            else
+                high = middle;
         }
         for (; low < count && nodes[low] < first + AB_TILE_NODES; ++low) {
-            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + 1, j = n / AB_TILE + (s / 3 - 1) * AB_TILE + 1;
+            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + 1,
+                      j = n / AB_TILE + (s / 3 - 1) * AB_TILE + 1;
             if (i < 0 || j < 0 || i >= PATCH || j >= PATCH) continue;
             wanted[j * PATCH + i] = (uint32_t)low + 1;
             any = true;
@@ -109,12 +110,11 @@ static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t 
 }
 
 /* Gradients at the wanted nodes and the list of points near them, from one tile's points. */
-static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[PATCH_NODES], uint32_t needs, size_t *entries)
-{
+static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[PATCH_NODES], uint32_t needs, size_t *entries) {
     struct mpm_trace *t = body->trace;
     const int nodes = body->kernel->nodes;
     const size_t ld = t->capacity;
-    bool reached[PATCH_NODES] = {false}; /* by the stencil that begins here */
+    bool reached[PATCH_NODES] = {false};                /* by the stencil that begins here */
     double low[2] = {PATCH, PATCH}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
     for (int n = 0; n < PATCH_NODES; ++n) {
         if (!wanted[n]) continue;
@@ -167,8 +167,7 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
     return true;
 }
 
-ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report)
-{
+ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (!reserve(body, count)) goto no_memory;
     struct mpm_trace *t = body->trace;
@@ -215,10 +214,25 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         t->near_start[0] = 0;
     }
     *trace = (ab_trace){
-        .struct_size = sizeof *trace, .dimension = 2, .body = domain->spec->name, .stiffness = body->modulus, .cell = body->h, .count = count, .ld = ld,
-        .position = t->position, .stencil_start = t->stencil_start, .stencil_dof = t->stencil_dof, .stencil_weight = t->stencil_weight, .key = t->key, .mass = t->mass,
-        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL, .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
-        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL, .near_ld = t->near_capacity, .near_position = t->near_position, .near_extent = t->near_extent,
+        .struct_size = sizeof *trace,
+        .dimension = 2,
+        .body = domain->spec->name,
+        .stiffness = body->modulus,
+        .cell = body->h,
+        .count = count,
+        .ld = ld,
+        .position = t->position,
+        .stencil_start = t->stencil_start,
+        .stencil_dof = t->stencil_dof,
+        .stencil_weight = t->stencil_weight,
+        .key = t->key,
+        .mass = t->mass,
+        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL,
+        .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
+        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL,
+        .near_ld = t->near_capacity,
+        .near_position = t->near_position,
+        .near_extent = t->near_extent,
     };
     return AB_OK;
 no_memory:

@@ -16,8 +16,7 @@ static const ab_param PARAMS[] = {
     {"tensile_strength", "Pa", "tension carried while the bodies touch; needs adhesion", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
 };
 
-static int create(const ab_host *host, const ab_value *settings, void **self)
-{
+static int create(const ab_host *host, const ab_value *settings, void **self) {
     if (settings[3].real > 0.0 && !(settings[1].real > 0.0)) return host->message(host->context, "tensile_strength needs adhesion > 0"), -1;
     coulomb *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
@@ -26,16 +25,15 @@ static int create(const ab_host *host, const ab_value *settings, void **self)
     return 0;
 }
 
-static void destroy(void *self)
-{
+static void destroy(void *self) {
     coulomb *law = self;
     law->host->release(law->host->context, law);
 }
 
-static const double TOUCH = 1e-3; /* of a cell: bodies no further apart touch, for adhesion and tension; gaps are no better known than this */
+static const double TOUCH =
+    1e-3; /* of a cell: bodies no further apart touch, for adhesion and tension; gaps are no better known than this */
 
-static int respond(void *self, ab_points *p, size_t first, size_t count)
-{
+static int respond(void *self, ab_points *p, size_t first, size_t count) {
     const coulomb *law = self;
     const size_t ld = p->ld, d = p->dimension;
     for (size_t i = first; i < first + count; ++i) {
@@ -72,7 +70,8 @@ static const ab_class CLASS = {
     .nparam = sizeof PARAMS / sizeof *PARAMS,
     .name = "coulomb",
     .help = "no approach beyond the gap; Coulomb friction with adhesion and a shear cap",
-    .reference = "projected Gauss-Seidel over contact points: Moreau 1999; Jean 1999. Friction between material points: Bardenhagen, Brackbill, Sulsky 2000",
+    .reference = "projected Gauss-Seidel over contact points: Moreau 1999; Jean 1999. Friction between material points: Bardenhagen, "
+                 "Brackbill, Sulsky 2000",
     .param = PARAMS,
     .create = create,
     .destroy = destroy,

@@ -3,8 +3,7 @@
 
 #include <math.h>
 
-static int respond(void *self, ab_points *p, size_t first, size_t count)
-{
+static int respond(void *self, ab_points *p, size_t first, size_t count) {
     (void)self;
     for (size_t i = first; i < first + count; ++i) {
         double approach = 0.0, normal_impulse = 0.0;

@@ -9,11 +9,11 @@ typedef struct tied {
 } tied;
 
 static const ab_param PARAMS[] = {
-    {"tolerance", "1", "points closer than this part of a cell are tied; others may only not pass through each other", NULL, AB_REAL, 0, 0.01, 0.0, 10.0},
+    {"tolerance", "1", "points closer than this part of a cell are tied; others may only not pass through each other", NULL, AB_REAL, 0,
+     0.01, 0.0, 10.0},
 };
 
-static int create(const ab_host *host, const ab_value *settings, void **self)
-{
+static int create(const ab_host *host, const ab_value *settings, void **self) {
     tied *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
     *law = (tied){host, settings[0].real};
@@ -21,14 +21,12 @@ static int create(const ab_host *host, const ab_value *settings, void **self)
     return 0;
 }
 
-static void destroy(void *self)
-{
+static void destroy(void *self) {
     tied *law = self;
     law->host->release(law->host->context, law);
 }
 
-static int respond(void *self, ab_points *p, size_t first, size_t count)
-{
+static int respond(void *self, ab_points *p, size_t first, size_t count) {
     const tied *law = self;
     for (size_t i = first; i < first + count; ++i) {
         double approach = 0.0, normal_impulse = 0.0;
