@@ -289,56 +289,14 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
              body->load_count ? ", tractions" : "");
 }
 
-static const ab_domain_ops OPS = {
-    .method = "material-points",
-    .destroy = destroy,
-    .critical_dt = critical_dt,
-    .begin = begin,
-    .finish = finish,
-    .stress = stress,
-    .ledger = ledger,
-    .node_tiles = node_tiles,
-    .trace = mpm_trace,
-    .dofs = dofs,
-    .count = mpm_count,
-    .fields = mpm_fields,
-    .read = mpm_read,
-    .plan = plan,
-};
-static const ab_domain_ops OPS_USF = {
-    .method = "material-points",
-    .destroy = destroy,
-    .critical_dt = critical_dt,
-    .begin = begin,
-    .early = early,
-    .finish = finish,
-    .stress = stress,
-    .ledger = ledger,
-    .node_tiles = node_tiles,
-    .trace = mpm_trace,
-    .dofs = dofs,
-    .count = mpm_count,
-    .fields = mpm_fields,
-    .read = mpm_read,
-    .plan = plan,
-};
-static const ab_domain_ops OPS_MUSL = {
-    .method = "material-points",
-    .destroy = destroy,
-    .critical_dt = critical_dt,
-    .begin = begin,
-    .finish = finish,
-    .remap = remap,
-    .stress = stress,
-    .ledger = ledger,
-    .node_tiles = node_tiles,
-    .trace = mpm_trace,
-    .dofs = dofs,
-    .count = mpm_count,
-    .fields = mpm_fields,
-    .read = mpm_read,
-    .plan = plan,
-};
+/* The three updates differ in one entry: USF strains early, MUSL maps velocities back, USL does neither. */
+#define SAME_IN_ALL                                                                                                                     \
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,    \
+    .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,             \
+    .read = mpm_read, .plan = plan
+static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
+static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
+static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
 
 /* Energy and motion before the first step. */
 static void measure(mpm_body *body) {
@@ -375,7 +333,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     body->kernel = !strcmp(spec->basis, "linear") ? &mpm_kernel_linear : &mpm_kernel_gimp;
     body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
     body->domain = (ab_domain){.ops = body->update == MPM_USF   ? &OPS_USF
-                                      : body->update == MPM_USL ? &OPS
+                                      : body->update == MPM_USL ? &OPS_USL
                                                                 : &OPS_MUSL,
                                .spec = spec,
                                .dimension = 2,
