@@ -340,7 +340,7 @@ static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, 
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
-    all->face = (ab_interaction){destroy, solve, settle, totals, book_body};
+    all->face = (ab_interaction){destroy, solve, settle, totals, book_body, NULL};
     all->scene = scene;
     all->found_step = all->answered_step = -1;
     all->pairs = calloc(scene->contact_count + 1, sizeof *all->pairs);

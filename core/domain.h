@@ -49,7 +49,27 @@ typedef struct ab_dofs {
     const double *velocity_old; /* at the start of the step: work = impulse . (old + new)/2 */
     const double *inverse_mass;
     size_t velocity_stride, old_stride, mass_stride;
+    /* A body that turns as a whole (rigid) has one dof, 0; its place x moves with velocity + spin x (x - centre). spin NULL: all others. */
+    double *spin;           /* 1/s, changed by the loop as velocities are */
+    const double *spin_old; /* at the start of the step */
+    double inverse_inertia; /* 1/(kg m2); 0 where the spin is held */
+    double centre[2];       /* m from the grid's corner */
 } ab_dofs;
+
+/* Cells in which the faces of one body may be touched: tiles (as of the background grid, ascending) with a bit per cell, bit (j%AB_TILE)*AB_TILE + i%AB_TILE
+ * for the cell whose lower left corner is node (i, j). */
+typedef struct ab_region {
+    double cell; /* m; the grid's where there is one */
+    size_t count;
+    const uint64_t *key, *cells;
+} ab_region;
+
+/* Elements for results: how a body's points (nodes) hang together. */
+typedef struct ab_cells {
+    size_t count;
+    int nodes;                    /* per cell: 4 or 8, corners counter-clockwise, then the middles of the sides 0-1, 1-2, 2-3, 3-0 */
+    const uint32_t *connectivity; /* count x nodes, places in the order of ids */
+} ab_cells;
 
 /* The background grid is one for all bodies, cut into tiles of AB_TILE x AB_TILE nodes. Node (i, j) stands at from + cell*(i, j); tile
  * (I, J) holds nodes i = AB_TILE*I .. AB_TILE*I + AB_TILE-1. A body lists only the tiles where it has mass. */
@@ -94,8 +114,14 @@ typedef struct ab_domain_ops {
      * domain's and are valid until the next call. */
     ab_status (*trace)(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
     void (*dofs)(const ab_domain *, ab_dofs *);
+    /* The surface, for finders that need it; arrays stay the domain's and are valid until the next call. Each fills its half of ab_surface: faces() vertices and
+     * faces; surface_points() the points in the region, with stencils, without near lists. Either NULL: the body has none. */
+    ab_status (*faces)(ab_domain *, ab_surface *, ab_report *);
+    ab_status (*surface_points)(ab_domain *, const ab_region *, ab_surface *, ab_report *);
+    double (*modulus)(const ab_domain *); /* Pa, P-wave modulus; INFINITY: rigid */
     /* results */
-    size_t (*count)(const ab_domain *); /* points (or nodes) that can be written now */
+    void (*cells)(const ab_domain *, ab_cells *); /* NULL: a cloud of points */
+    size_t (*count)(const ab_domain *);           /* points (or nodes) that can be written now */
     const ab_field *(*fields)(const ab_domain *, size_t *count);
     ab_status (*read)(const ab_domain *, const char *field, double *values,
                       ab_report *); /* values[i*components + c], i in order of id; "id" gives ids */

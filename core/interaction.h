@@ -20,6 +20,8 @@ struct ab_interaction { /* first member of the maker's own struct */
     const ab_contact_totals *(*totals)(const ab_interaction *);
     /* Friction and contact dissipation of a body so far, J. */
     void (*book)(const ab_interaction *, size_t body, double *friction, double *contact);
+    /* dt, s, at which a spring of contact is neutrally stable (responses that act as one); INFINITY without. As of the last step. */
+    double (*critical_dt)(const ab_interaction *, const char **limit);
 };
 
 /* Only called for scenes with contacts. */

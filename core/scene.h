@@ -40,11 +40,47 @@ typedef struct ab_where {
     ab_mark mark;
 } ab_where;
 
+typedef enum ab_element_type { AB_ELEMENT_Q4 = 0, AB_ELEMENT_Q4R, AB_ELEMENT_Q6, AB_ELEMENT_Q8, AB_ELEMENT_Q8R } ab_element_type;
+typedef enum ab_mesh_kind { AB_MESH_NONE = 0, AB_MESH_BOX, AB_MESH_PATCH, AB_MESH_FILE } ab_mesh_kind;
+
+typedef struct ab_edge_spec { /* of a patch: straight from point to point, or an arc of a circle */
+    double (*points)[2];      /* count of them, from one corner to the other */
+    size_t count;
+    bool arc;
+    double center[2]; /* arc: from points[0] to points[1], the short way round */
+} ab_edge_spec;
+
+typedef struct ab_mesh_spec {
+    ab_mesh_kind kind;
+    ab_mark mark;
+    ab_element_type type;
+    double low[2], high[2]; /* box */
+    ab_edge_spec edge[4];   /* patch: bottom, right, top, left; bottom and top run left to right, left and right upwards */
+    long elements[2];       /* box, patch: along x (bottom), along y (left) */
+    double grading[2];      /* size of the last element over that of the first; default 1 */
+    char *file;             /* as written, from the scene's folder */
+    bool f_bar;             /* q4: mean dilatation */
+    double hourglass;       /* q4r: part of the physical stabilisation, default 1 */
+} ab_mesh_spec;
+
+typedef struct ab_fix_spec { /* nodes whose velocity is given */
+    ab_where where;
+    bool has[2];           /* false: that direction is free */
+    ab_number velocity[2]; /* m/s, formulas of t */
+} ab_fix_spec;
+
+typedef struct ab_motion_spec { /* of a rigid body; what is not given follows from forces */
+    bool has[2], has_spin, has_center, has_mass, has_inertia;
+    ab_number velocity[2], spin; /* m/s, 1/s (counter-clockwise); formulas of t */
+    double center[2];            /* m: the point that velocity is of; default: centre of mass */
+    double mass, inertia;        /* kg, kg m2 (per m of thickness) */
+} ab_motion_spec;
+
 typedef struct ab_body_spec {
     char *name;
     ab_mark mark;
-    char *method;    /* "material-points"; main maps it to a domain maker */
-    size_t material; /* index into materials */
+    char *method;    /* "material-points" | "finite-elements" | "rigid"; main maps it to a domain maker */
+    size_t material; /* index into materials; SIZE_MAX: none (a rigid body may do without) */
     ab_shape_spec shape;
     ab_fill_rule fill;
     int per_cell;
@@ -55,6 +91,11 @@ typedef struct ab_body_spec {
     ab_number velocity[2]; /* formulas of x, y */
     bool gravity;
     ab_mark mark_fill;
+    ab_mesh_spec mesh; /* finite-elements; rigid may have one instead of a shape */
+    ab_fix_spec *fix;
+    size_t fix_count;
+    ab_motion_spec motion; /* rigid */
+    bool has_shape;
 } ab_body_spec;
 
 typedef struct ab_contact_spec {
@@ -69,6 +110,9 @@ typedef struct ab_load_spec {
     size_t body;
     ab_where where;
     ab_number traction[2]; /* Pa, formulas of t */
+    bool point;            /* a force at one place instead */
+    double at[2];          /* m: the node nearest to it carries the force; of a rigid body the place itself */
+    ab_number force[2];    /* N (per m of thickness), formulas of t */
 } ab_load_spec;
 
 typedef struct ab_monitor_spec {
@@ -104,7 +148,7 @@ typedef struct ab_scene {
     double damping_local, damping_until; /* until: s, INFINITY when always */
     double time_end, time_dt, time_cfl;  /* dt 0: by cfl; cfl 0: by dt */
     ab_mark mark_time, mark_grid;
-    double grid_from[2], grid_to[2], grid_cell;
+    double grid_from[2], grid_to[2], grid_cell; /* cell 0: no grid (finite elements and rigid bodies alone) */
     int grid_cells[2];
     ab_side_kind side[AB_SIDES];
     ab_material_spec *materials;

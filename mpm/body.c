@@ -237,7 +237,12 @@ static void node_tiles(const ab_domain *domain, ab_node_tiles *tiles) {
 
 static void dofs(const ab_domain *domain, ab_dofs *d) {
     const mpm_body *body = (const mpm_body *)domain;
-    *d = (ab_dofs){body->own + OWN_VELOCITY, body->own + OWN_OLD, body->own + OWN_INVERSE, OWN_RECORD, OWN_RECORD, OWN_RECORD};
+    *d = (ab_dofs){.velocity = body->own + OWN_VELOCITY,
+                   .velocity_old = body->own + OWN_OLD,
+                   .inverse_mass = body->own + OWN_INVERSE,
+                   .velocity_stride = OWN_RECORD,
+                   .old_stride = OWN_RECORD,
+                   .mass_stride = OWN_RECORD};
 }
 
 static int compare_cells(const void *a, const void *b) {
@@ -290,9 +295,9 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
 }
 
 /* The three updates differ in one entry: USF strains early, MUSL maps velocities back, USL does neither. */
-#define SAME_IN_ALL                                                                                                                     \
-    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,    \
-    .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,             \
+#define SAME_IN_ALL                                                                                                                        \
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
+    .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
     .read = mpm_read, .plan = plan
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};

@@ -98,7 +98,7 @@ static int side_of(const double normal[2]) {
     return AB_BOTTOM;
 }
 
-bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_surface *surface) {
+bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_outline_piece *surface) {
     if (where->all) return true;
     if (where->side < 0 && !where->has[0] && !where->has[1]) return false;
     if (where->side >= 0 && side_of(surface->normal) != where->side) return false;
@@ -132,7 +132,7 @@ ab_status ab_filler_reserve(ab_filler *filler, ab_mark mark, double points, doub
                                "body '%s' would have %.3g points (%d in each cell of %g m), more than the %.0f that can be numbered; use a "
                                "larger cell or fewer per_cell",
                                filler->body, count, filler->per_cell, filler->cell, most);
-    const double bytes = count * 6 * sizeof(double) + surface_count * (double)sizeof(ab_surface);
+    const double bytes = count * 6 * sizeof(double) + surface_count * (double)sizeof(ab_outline_piece);
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (memory > 0 && bytes > memory)
         return ab_report_error(filler->report, mark,
@@ -149,7 +149,7 @@ ab_status ab_filler_reserve(ab_filler *filler, ab_mark mark, double points, doub
     }
     if (surface_count > (double)filler->surface_capacity) {
         const size_t capacity = (size_t)fmin(most, fmax(surface_count, 1.5 * (double)filler->surface_capacity));
-        AB_TRY(grow((void **)&fill->surface, capacity, sizeof(ab_surface), filler));
+        AB_TRY(grow((void **)&fill->surface, capacity, sizeof(ab_outline_piece), filler));
         filler->surface_capacity = capacity;
     }
     return AB_OK;
@@ -169,7 +169,7 @@ uint32_t ab_filler_point(ab_filler *filler, double x, double y, double volume, d
 
 void ab_filler_piece(ab_filler *filler, uint32_t point, double x, double y, double normal_x, double normal_y, double length) {
     filler->fill->surface[filler->fill->surface_count++] =
-        (ab_surface){.point = point, .position = {x, y}, .normal = {normal_x, normal_y}, .length = length};
+        (ab_outline_piece){.point = point, .position = {x, y}, .normal = {normal_x, normal_y}, .length = length};
 }
 
 void ab_filler_bound(ab_filler *filler, double x, double y) {

@@ -7,19 +7,19 @@
 
 #include "core/scene.h"
 
-typedef struct ab_surface { /* a piece of the outline and the point under it */
+typedef struct ab_outline_piece { /* a piece of the outline and the point under it */
     uint32_t point;
     double position[2]; /* m, middle of the piece, on the outline */
     double normal[2];   /* out of the body */
     double length;      /* m */
-} ab_surface;
+} ab_outline_piece;
 
 typedef struct ab_fill {
     size_t count;
     double *x, *y;  /* m */
     double *volume; /* m2 (per m of thickness) */
     double *extent; /* m2: (xx, yy, xy) per point, extent[3*i + c]; half size in direction n is sqrt(n.A.n) */
-    ab_surface *surface;
+    ab_outline_piece *surface;
     size_t surface_count;
     double low[2], high[2]; /* bounding box of the outline */
 } ab_fill;
@@ -40,6 +40,6 @@ void ab_fill_destroy(ab_fill *fill);
 
 /* True where the piece of outline is in the set. Sides: pieces whose normal is within 45 degrees of the side's (closed at one end, so that a
  * corner piece belongs to one side). */
-bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_surface *surface);
+bool ab_where_holds(const ab_where *where, const ab_fill *fill, const ab_outline_piece *surface);
 
 #endif

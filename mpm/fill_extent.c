@@ -118,7 +118,7 @@ ab_status ab_fill_fit_extents(ab_filler *filler, size_t first_piece) {
         const uint32_t p = list[k].point;
         size_t used = 0;
         for (; k < count && list[k].point == p; k++) {
-            const ab_surface *s = &fill->surface[list[k].piece];
+            const ab_outline_piece *s = &fill->surface[list[k].piece];
             sides[used++] =
                 (facing){.n = {s->normal[0], s->normal[1]},
                          .distance = (s->position[0] - fill->x[p]) * s->normal[0] + (s->position[1] - fill->y[p]) * s->normal[1],

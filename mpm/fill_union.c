@@ -93,14 +93,14 @@ static bool same_circle(const ab_shape_spec *a, double radius_a, const ab_shape_
 static double inner_radius(const ab_shape_spec *s) { return s->kind == AB_SHAPE_RING ? s->inner : 0; }
 
 /* Whether a piece of a disc or ring lies on a circle that the other fills from the other side. */
-static bool covered_by_circle(const ab_surface *s, const ab_shape_spec *own, const ab_shape_spec *other, double slack) {
+static bool covered_by_circle(const ab_outline_piece *s, const ab_shape_spec *own, const ab_shape_spec *other, double slack) {
     const bool outer = (s->position[0] - own->center[0]) * s->normal[0] + (s->position[1] - own->center[1]) * s->normal[1] > 0;
     return outer ? same_circle(own, own->radius, other, inner_radius(other), slack)
                  : same_circle(own, inner_radius(own), other, other->radius, slack);
 }
 
 /* Takes what an edge that runs the other way covers of a straight piece; true where that leaves two parts, the second in *rest. */
-static bool uncover(ab_surface *s, const ab_edge *edge, double slack, ab_surface *rest) {
+static bool uncover(ab_outline_piece *s, const ab_edge *edge, double slack, ab_outline_piece *rest) {
     const double t[2] = {-s->normal[1], s->normal[0]}; /* the piece runs along t, the body on its left */
     const double dx = edge->to[0] - edge->from[0], dy = edge->to[1] - edge->from[1], length = hypot(dx, dy);
     if (dx * t[0] + dy * t[1] > -(1 - 1e-9) * length) return false;
@@ -109,7 +109,7 @@ static bool uncover(ab_surface *s, const ab_edge *edge, double slack, ab_surface
     const double high = from[0] * t[0] + from[1] * t[1], low = high - length, half = 0.5 * s->length; /* of the edge, along t */
     if (low >= half - slack || high <= -half + slack) return false;
     const double below = fmax(0, low + half), above = fmax(0, half - high); /* lengths left on either side */
-    const ab_surface old = *s;
+    const ab_outline_piece old = *s;
     *rest = old;
     s->length = below > slack ? below : 0;
     rest->length = above > slack ? above : 0;
@@ -130,7 +130,7 @@ static ab_status uncover_group(ab_filler *filler, ab_mark mark, boundary *a, con
         b->low[1] > a->high[1] + slack)
         return AB_OK;
     for (size_t k = a->first_piece; k < a->end_piece; k++) {
-        ab_surface *s = &filler->fill->surface[k];
+        ab_outline_piece *s = &filler->fill->surface[k];
         if (a->round) {
             if (b->round && covered_by_circle(s, a->round, b->round, slack)) s->length = 0;
             continue;
@@ -139,7 +139,7 @@ static ab_status uncover_group(ab_filler *filler, ab_mark mark, boundary *a, con
             s->position[1] + s->length < b->low[1])
             continue;
         for (size_t e = 0; e < b->outline.count && filler->fill->surface[k].length > 0; e++) {
-            ab_surface rest;
+            ab_outline_piece rest;
             if (!uncover(&filler->fill->surface[k], &b->outline.edge[e], slack, &rest)) continue;
             AB_TRY(ab_filler_reserve(filler, mark, 0, 1)); /* may move the list */
             filler->fill->surface[filler->fill->surface_count++] = rest;

@@ -20,7 +20,7 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
             for (size_t s = 0; s < fill->surface_count; ++s) {
                 if (!ab_where_holds(&scene->loads[k].where, fill, fill->surface + s)) continue;
                 if (pass) {
-                    const ab_surface *piece = fill->surface + s;
+                    const ab_outline_piece *piece = fill->surface + s;
                     const double arm[2] = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
                                  half = 0.5 * piece->length;
                     body->loads[count] = (mpm_load){

@@ -1,4 +1,4 @@
-/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.0.
+/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.1.
  *
  * One source file makes one shared object. The object exports one symbol, and it is data:
  *
@@ -39,7 +39,7 @@ extern "C" {
 #endif
 
 #define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
-#define AB_ABI_MINOR 0u /* grows when something is added; a plugin may be older than the host, never newer */
+#define AB_ABI_MINOR 1u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs */
 
 #if defined(__GNUC__)
 #define AB_EXPORT __attribute__((visibility("default")))
@@ -120,7 +120,9 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     AB_NEED_SHARED_NODES = 16u,
     AB_NEED_MASS_GRADIENT = 32u,
     AB_NEED_AREA_VECTOR = 64u,
-    AB_NEED_NEAR_POINTS = 128u
+    AB_NEED_NEAR_POINTS = 128u,
+    AB_NEED_SURFACE = 256u, /* trace->surface: points of one body and the faces of the other near them (since 1.1) */
+    AB_NEED_DISTANCE = 512u /* responses: points->distance (since 1.1) */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,
@@ -177,6 +179,32 @@ typedef struct ab_boundary_ops {
 
 /* ---- contact ---------------------------------------------------------------------------------------------------------- */
 
+/* The surface of one body of a pair: points that may touch faces of the other body, and faces that points of the other may touch. Either list may be
+ * empty (material points without an outline have no faces). Positions are measured from the grid's corner, as everywhere in a trace. A velocity anywhere on the
+ * surface is that of its stencil: sum of weight x velocity of dof; the weights of a point or a vertex sum to 1. In two dimensions a face runs from its first
+ * vertex to its last with the body on its left, so that its outside is on its right. */
+typedef struct ab_surface {
+    uint32_t struct_size, dimension;
+    size_t point_count, point_ld;
+    const double *point_position; /* m; dimension rows */
+    const double *point_extent;   /* m2; symmetric, as near_extent: the half size along n is sqrt(n.A.n); 0 for nodes */
+    const double *point_area;     /* m2 (m in plane strain): share of the surface; of a material point, the width of its domain */
+    const uint64_t *point_key;    /* names the point in every step */
+    const size_t *point_start;    /* point_count + 1: its stencil */
+    const uint32_t *point_dof;
+    const double *point_weight;
+    const size_t *near_start; /* point_count + 1: faces of the *other* body within reach of the point, ascending */
+    const uint32_t *near_face;
+    size_t vertex_count, vertex_ld;
+    const double *vertex_position; /* m; dimension rows */
+    const size_t *vertex_start;    /* vertex_count + 1: its stencil */
+    const uint32_t *vertex_dof;
+    const double *vertex_weight;
+    size_t face_count;
+    const uint32_t *face_vertex; /* 3 per face: first, last, middle (UINT32_MAX: a straight face) */
+    const uint32_t *face_beside; /* 2 per face: the face before its first vertex, the face after its last (UINT32_MAX: none) */
+} ab_surface;
+
 /* One body of a pair as a finder sees it. Shared nodes: grid nodes that have mass of both bodies; item i of side a and item i of
  * side b are the same node. "Near points" are the body's own points whose basis reaches the node, listed per node:
  * those of node i are near_start[i] .. near_start[i+1]-1. The half size of a point in direction n is sqrt(n.A.n), A its extent. */
@@ -198,6 +226,7 @@ typedef struct ab_trace {
     size_t near_ld;
     const double *near_position; /* m from the grid's corner; dimension rows */
     const double *near_extent;   /* m2; symmetric: (xx, yy, xy) or (xx, yy, zz, xy, yz, zx) */
+    const ab_surface *surface;   /* NULL unless needed; since 1.1. With it alone count is 0: no node is looked for */
 } ab_trace;
 
 /* Contact points (side a, side b): v_rel = sum w_a v_a - sum w_b v_b; the normal goes out of a into b; approaching when v_rel.n > 0.
@@ -222,6 +251,11 @@ typedef struct ab_points {
     double *impulse;                 /* N s on b, dimension rows: in: total of this step so far; out: new total */
     const double *state0;
     double *state1;
+    /* since 1.1 */
+    double *distance;  /* m, written by find where a response needs it (else NULL): from where the impulse acts to the nearest material of the stiffer body */
+    double *stiffness; /* N/m (per m of thickness), written by a response that acts as a spring: the host keeps dt below 2 sqrt(m/k). Zeroed by the host */
+    double modulus;    /* Pa: P-wave modulus of the softer body */
+    size_t failures;   /* find adds what it could not decide; the run's summary shows the sum */
 } ab_points;
 
 typedef struct ab_contact_ops {

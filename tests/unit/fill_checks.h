@@ -93,7 +93,7 @@ static inline double moment_of(const ab_fill *f, const double *x) {
 static inline double surface_error(const ab_fill *f) {
     double worst = 0;
     for (size_t k = 0; k < f->surface_count; k++) {
-        const ab_surface *s = &f->surface[k];
+        const ab_outline_piece *s = &f->surface[k];
         assert_true(s->point < f->count);
         const double *a = &f->extent[3 * (size_t)s->point], *n = s->normal;
         assert_true(fabs(hypot(n[0], n[1]) - 1) < 1e-14);

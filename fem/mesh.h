@@ -1,0 +1,41 @@
+/* mesh.h: a mesh of quadrilaterals as it is drawn: boxes by rule, patches between four edges, Gmsh files. Inside fem/ only. */
+#ifndef AB_FEM_MESH_H
+#define AB_FEM_MESH_H
+
+#include "core/scene.h"
+
+typedef struct fem_mesh {
+    int nodes; /* per element: 4 or 8; corners counter-clockwise, then the middles of the sides 0-1, 1-2, 2-3, 3-0 */
+    size_t node_count, element_count;
+    double *x;                      /* 2 a node, m, as drawn */
+    uint32_t *connectivity;         /* nodes an element */
+    uint64_t *node_id, *element_id; /* as in the file, for messages; NULL: places from 0 */
+} fem_mesh;
+
+/* The mesh of a body with spec->mesh, checked: no orphan nodes, no inverted or duplicate element, positive det J at all Gauss points. Mistakes name the place in
+ * the scene or the ids of the file, all at once. `folder`: of the scene, for files. */
+ab_status fem_mesh_create(const ab_body_spec *spec, const char *folder, fem_mesh **mesh, ab_report *);
+void fem_mesh_destroy(fem_mesh *);
+
+static const uint32_t FEM_NONE = UINT32_MAX;
+
+/* The outer faces of a mesh, from its connectivity: sides that belong to one element. Going from vertex 0 to vertex 1 the body is on the left. */
+typedef struct fem_faces {
+    size_t count;
+    uint32_t *vertex;  /* 3 a face: first, last, middle node (FEM_NONE: linear) */
+    uint32_t *beside;  /* 2 a face: the face that ends at its first vertex, the one that begins at its last */
+    uint32_t *element; /* that the face belongs to */
+    uint8_t *side;     /* of it: 0..3 */
+    size_t node_count;
+    uint32_t *node; /* nodes on outer faces, ascending */
+} fem_faces;
+
+ab_status fem_faces_create(const fem_mesh *, const char *body, fem_faces **faces, ab_report *);
+void fem_faces_destroy(fem_faces *);
+
+/* True where a place of the initial mesh is in the set. `side` means an outer face whose outward normal points that way by less than 45 degrees and that lies on the
+ * outline; low, high: bounds of the mesh; slack 1e-9 of its size. A node belongs to a side when one of its faces does. */
+bool fem_where_node(const ab_where *, const fem_mesh *, const fem_faces *, uint32_t node);
+bool fem_where_face(const ab_where *, const fem_mesh *, const fem_faces *, size_t face); /* both ends in the set */
+
+#endif
