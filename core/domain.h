@@ -89,7 +89,8 @@ typedef struct ab_node_tiles { /* borrowed; valid until the next begin */
 } ab_node_tiles;
 
 typedef struct ab_plan_body { /* what a body will cost; filled by plan() */
-    size_t points, cells, tiles;
+    size_t points, cells, tiles; /* points: nodes where the body has elements; cells, tiles: of the grid, 0 where it is not on it */
+    size_t elements;             /* of a mesh */
     size_t bytes, bytes_per_point;
     char fields[512]; /* names of the arrays allocated, separated by ", " */
     char passes[512]; /* passes per step, separated by ", " */
@@ -119,6 +120,9 @@ typedef struct ab_domain_ops {
     ab_status (*faces)(ab_domain *, ab_surface *, ab_report *);
     ab_status (*surface_points)(ab_domain *, const ab_region *, ab_surface *, ab_report *);
     double (*modulus)(const ab_domain *); /* Pa, P-wave modulus; INFINITY: rigid */
+    /* Force, N, and moment about the origin of the scene, N m in [2], that held and prescribed nodes, or the motion prescribed to a rigid body, put on the
+     * body in the last step; 0 before the first. NULL: the body has none. */
+    void (*reaction)(const ab_domain *, double force[3]);
     /* results */
     void (*cells)(const ab_domain *, ab_cells *); /* NULL: a cloud of points */
     size_t (*count)(const ab_domain *);           /* points (or nodes) that can be written now */
