@@ -88,7 +88,7 @@ typedef struct ab_node_tiles { /* borrowed; valid until the next begin */
     uint64_t version; /* another number when the list is another */
 } ab_node_tiles;
 
-typedef struct ab_plan_body { /* what a body will cost; filled by plan() */
+typedef struct ab_plan_body {    /* what a body will cost; filled by plan() */
     size_t points, cells, tiles; /* points: nodes where the body has elements; cells, tiles: of the grid, 0 where it is not on it */
     size_t elements;             /* of a mesh */
     size_t bytes, bytes_per_point;
