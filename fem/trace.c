@@ -1,0 +1,435 @@
+/* trace.c: a body's inner points on the background grid: which tiles they reach, how much mass they give each node, and what a contact finder sees of them at
+ * the nodes it asks for.
+ *
+ * Points are kept in the order of the cells they stand in (counting sort by tile and cell, anew only when a point has changed its cell), so that a node finds
+ * those that reach it in the four cells around it. Each tile scatters into a patch of its own, one node larger than the tile; then each tile adds up its nodes from
+ * its own patch and those to the left and below, in one fixed order: no sum depends on the number of threads. */
+#include "fem/trace.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    PATCH = AB_TILE + 1,
+    PATCH_NODES = PATCH * PATCH,
+    PARALLEL_FROM = 8000, /* points; fewer are done before threads have woken up */
+    FARTHEST = 1 << 29    /* cells from the grid's corner */
+};
+
+typedef struct tile {
+    int32_t around[9]; /* tiles around it by (dy+1)*3 + dx+1; -1: none */
+} tile;
+
+struct fem_trace {
+    const char *body;
+    double h, inverse_h, modulus;
+    /* tiles, ascending */
+    size_t tile_count, tile_capacity, key_capacity;
+    uint64_t *key, *wanted; /* wanted: for a new list */
+    size_t wanted_count;
+    tile *tiles;
+    double *mass;         /* AB_TILE_NODES per tile */
+    double *patch;        /* PATCH_NODES per tile */
+    uint32_t *cell_start; /* AB_TILE_NODES*tile_count + 1: places in `order` of the points of each cell */
+    uint64_t version;
+    /* points */
+    size_t point_count, point_capacity;
+    uint64_t *cell; /* ab_tile_key of the cell's lower left node */
+    uint32_t *slot; /* tile*AB_TILE_NODES + cell in it */
+    uint32_t *order;
+    /* what a finder was last shown */
+    size_t capacity, near_capacity, stencil_capacity, place_capacity;
+    double *position, *node_mass, *mass_gradient, *area_vector, *stencil_weight, *near_position, *near_extent;
+    size_t *near_start, *stencil_start, *place; /* place: by dof, where it stands in the stencil of the node at hand */
+    uint32_t *stencil_dof;
+    uint64_t *node_key;
+};
+
+static bool grow(void *pointer, size_t count, size_t size) {
+    void **p = pointer;
+    void *more = realloc(*p, count * size);
+    if (more) *p = more;
+    return more != NULL;
+}
+
+ab_status fem_trace_create(const ab_scene *scene, const char *body, double modulus, fem_trace **trace, ab_report *report) {
+    *trace = NULL;
+    if (!(scene->grid_cell > 0.0))
+        return ab_report_failure(report, "body '%s': a contact that looks at shared nodes needs a grid; write grid: {from, to, cell}",
+                                 body);
+    fem_trace *t = calloc(1, sizeof *t);
+    if (!t) return ab_report_failure(report, "body '%s': no memory for its trace on the grid", body);
+    t->body = body;
+    t->h = scene->grid_cell;
+    t->inverse_h = 1.0 / t->h;
+    t->modulus = modulus;
+    *trace = t;
+    return AB_OK;
+}
+
+void fem_trace_destroy(fem_trace *t) {
+    if (!t) return;
+    free(t->key), free(t->wanted), free(t->tiles), free(t->mass), free(t->patch), free(t->cell_start);
+    free(t->cell), free(t->slot), free(t->order);
+    free(t->position), free(t->node_mass), free(t->mass_gradient), free(t->area_vector), free(t->stencil_weight), free(t->near_position);
+    free(t->near_extent), free(t->near_start), free(t->stencil_start), free(t->place), free(t->stencil_dof), free(t->node_key), free(t);
+}
+
+/* ---- tiles ---------------------------------------------------------------------------------------------------------------- */
+
+static int compare_keys(const void *a, const void *b) {
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+static int32_t find_tile(const fem_trace *t, uint64_t key) {
+    size_t low = 0, high = t->tile_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (t->key[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < t->tile_count && t->key[low] == key ? (int32_t)low : -1;
+}
+
+/* The tile that owns a node, and the node's place in it. Rounds down for negative numbers too. */
+static uint64_t home_of(int32_t i, int32_t j, uint32_t *place) {
+    const int32_t tx = (i >= 0 ? i : i - (AB_TILE - 1)) / AB_TILE, ty = (j >= 0 ? j : j - (AB_TILE - 1)) / AB_TILE;
+    *place = (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE);
+    return ab_tile_key(tx, ty);
+}
+
+/* Cell of each point. *moved: some point has changed its cell. */
+static ab_status find_cells(fem_trace *t, const fem_inner *inner, bool *moved, ab_report *report) {
+    const double *x = inner->position, *y = x + inner->ld;
+    int changed = 0, lost = 0;
+#pragma omp parallel for schedule(static) reduction(| : changed, lost) if (inner->count >= PARALLEL_FROM)
+    for (size_t q = 0; q < inner->count; ++q) {
+        const double u = floor(x[q] * t->inverse_h), v = floor(y[q] * t->inverse_h);
+        if (!(fabs(u) < FARTHEST && fabs(v) < FARTHEST)) {
+            lost = 1;
+            continue;
+        }
+        const uint64_t cell = ab_tile_key((int32_t)u, (int32_t)v);
+        changed |= cell != t->cell[q];
+        t->cell[q] = cell;
+    }
+    *moved = changed != 0;
+    if (lost)
+        return ab_report_failure(
+            report,
+            "body '%s' has places that are no finite numbers, or lie more than %d cells from the grid: the run has blown "
+            "up; use a smaller dt",
+            t->body, (int)FARTHEST);
+    return AB_OK;
+}
+
+static bool want(fem_trace *t, uint64_t key, uint64_t *last) {
+    if (key == *last) return true;
+    *last = key;
+    if (t->wanted_count == t->key_capacity) {
+        const size_t more = 2 * t->key_capacity + 256;
+        if (!grow(&t->wanted, more, sizeof *t->wanted)) return false;
+        t->key_capacity = more;
+    }
+    t->wanted[t->wanted_count++] = key;
+    return true;
+}
+
+/* The tiles of all nodes that some point reaches. False: no memory. */
+static bool list_tiles(fem_trace *t) {
+    uint64_t last[4] = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX};
+    t->wanted_count = 0;
+    for (size_t q = 0; q < t->point_count; ++q) {
+        uint32_t place;
+        const uint64_t home = home_of(ab_tile_x(t->cell[q]), ab_tile_y(t->cell[q]), &place);
+        const bool right = place % AB_TILE == AB_TILE - 1, up = place / AB_TILE == AB_TILE - 1;
+        const int32_t tx = ab_tile_x(home), ty = ab_tile_y(home);
+        if (!want(t, home, last) || (right && !want(t, ab_tile_key(tx + 1, ty), last + 1)) ||
+            (up && !want(t, ab_tile_key(tx, ty + 1), last + 2)) || (right && up && !want(t, ab_tile_key(tx + 1, ty + 1), last + 3)))
+            return false;
+    }
+    if (t->wanted_count) qsort(t->wanted, t->wanted_count, sizeof *t->wanted, compare_keys);
+    size_t unique = 0;
+    for (size_t k = 0; k < t->wanted_count; ++k)
+        if (unique == 0 || t->wanted[k] != t->wanted[unique - 1]) t->wanted[unique++] = t->wanted[k];
+    if (unique > t->tile_capacity || !t->cell_start) {
+        const size_t n = unique + unique / 2 + 16;
+        if (!grow(&t->key, n, sizeof *t->key) || !grow(&t->tiles, n, sizeof *t->tiles) ||
+            !grow(&t->mass, n * AB_TILE_NODES, sizeof *t->mass) || !grow(&t->patch, n * PATCH_NODES, sizeof *t->patch) ||
+            !grow(&t->cell_start, n * AB_TILE_NODES + 1, sizeof *t->cell_start))
+            return false;
+        t->tile_capacity = n;
+    }
+    if (unique) memcpy(t->key, t->wanted, unique * sizeof *t->key);
+    t->tile_count = unique;
+    for (size_t k = 0; k < unique; ++k)
+        for (int s = 0; s < 9; ++s)
+            t->tiles[k].around[s] = find_tile(t, ab_tile_key(ab_tile_x(t->key[k]) + s % 3 - 1, ab_tile_y(t->key[k]) + s / 3 - 1));
+    ++t->version;
+    return true;
+}
+
+/* Tile and cell of each point in the list as it is; false where a point reaches a tile that is not listed. */
+static bool place_points(fem_trace *t) {
+    uint64_t last = UINT64_MAX;
+    int32_t number = -1;
+    for (size_t q = 0; q < t->point_count; ++q) {
+        uint32_t place;
+        const uint64_t home = home_of(ab_tile_x(t->cell[q]), ab_tile_y(t->cell[q]), &place);
+        if (home != last) {
+            last = home;
+            number = find_tile(t, home);
+            if (number < 0) return false;
+        }
+        const int32_t *around = t->tiles[number].around;
+        const bool right = place % AB_TILE == AB_TILE - 1, up = place / AB_TILE == AB_TILE - 1;
+        if ((right && around[5] < 0) || (up && around[7] < 0) || (right && up && around[8] < 0)) return false;
+        t->slot[q] = (uint32_t)number * AB_TILE_NODES + place;
+    }
+    return true;
+}
+
+/* Points by tile, cell and number. */
+static void sort_points(fem_trace *t) {
+    const size_t cells = t->tile_count * AB_TILE_NODES;
+    uint32_t *start = t->cell_start;
+    memset(start, 0, (cells + 1) * sizeof *start);
+    for (size_t q = 0; q < t->point_count; ++q) ++start[t->slot[q] + 1];
+    for (size_t k = 0; k < cells; ++k) start[k + 1] += start[k];
+    for (size_t q = 0; q < t->point_count; ++q) t->order[start[t->slot[q]]++] = (uint32_t)q;
+    for (size_t k = cells; k > 0; --k) start[k] = start[k - 1];
+    start[0] = 0;
+}
+
+/* Values of the hat functions of the two nodes of a cell in one direction, at s cells from the grid's corner; i: the first node. */
+static inline void hats(double s, int32_t i, double n[2]) {
+    n[1] = fmin(fmax(s - i, 0.0), 1.0);
+    n[0] = 1.0 - n[1];
+}
+
+static void scatter(fem_trace *t, const fem_inner *inner, size_t k) {
+    double *patch = t->patch + k * PATCH_NODES;
+    memset(patch, 0, PATCH_NODES * sizeof *patch);
+    const uint32_t *start = t->cell_start + k * AB_TILE_NODES;
+    const double *x = inner->position, *y = x + inner->ld;
+    const int32_t i0 = ab_tile_x(t->key[k]) * AB_TILE, j0 = ab_tile_y(t->key[k]) * AB_TILE;
+    for (int c = 0; c < AB_TILE_NODES; ++c) {
+        const int i = c % AB_TILE, j = c / AB_TILE;
+        double sum[4] = {0.0};
+        for (uint32_t s = start[c]; s < start[c + 1]; ++s) {
+            const uint32_t q = t->order[s];
+            double nx[2], ny[2];
+            hats(x[q] * t->inverse_h, i0 + i, nx);
+            hats(y[q] * t->inverse_h, j0 + j, ny);
+            const double m = inner->mass[q];
+            sum[0] += nx[0] * ny[0] * m;
+            sum[1] += nx[1] * ny[0] * m;
+            sum[2] += nx[0] * ny[1] * m;
+            sum[3] += nx[1] * ny[1] * m;
+        }
+        for (int n = 0; n < 4; ++n) patch[(j + n / 2) * PATCH + i + n % 2] += sum[n];
+    }
+}
+
+static void assemble(fem_trace *t, size_t k) {
+    double *mass = t->mass + k * AB_TILE_NODES;
+    const double *own = t->patch + k * PATCH_NODES;
+    const int32_t *around = t->tiles[k].around;
+    for (int j = 0; j < AB_TILE; ++j)
+        for (int i = 0; i < AB_TILE; ++i) mass[j * AB_TILE + i] = own[j * PATCH + i];
+    const double *left = around[3] >= 0 ? t->patch + (size_t)around[3] * PATCH_NODES : NULL,
+                 *below = around[1] >= 0 ? t->patch + (size_t)around[1] * PATCH_NODES : NULL,
+                 *corner = around[0] >= 0 ? t->patch + (size_t)around[0] * PATCH_NODES : NULL;
+    for (int n = 0; n < AB_TILE; ++n) {
+        if (left) mass[n * AB_TILE] += left[n * PATCH + AB_TILE];
+        if (below) mass[n] += below[AB_TILE * PATCH + n];
+    }
+    if (corner) mass[0] += corner[AB_TILE * PATCH + AB_TILE];
+}
+
+ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *report) {
+    const size_t count = inner->count;
+    bool moved = t->version == 0 || count != t->point_count;
+    if (moved) {
+        if (count > t->point_capacity || !t->cell) {
+            const size_t n = count + 16;
+            if (!grow(&t->cell, n, sizeof *t->cell) || !grow(&t->slot, n, sizeof *t->slot) || !grow(&t->order, n, sizeof *t->order))
+                goto no_memory;
+            t->point_capacity = n;
+        }
+        t->point_count = count;
+        memset(t->cell, 0xff, count * sizeof *t->cell);
+        bool all;
+        AB_TRY(find_cells(t, inner, &all, report));
+        if (!list_tiles(t)) goto no_memory;
+    } else {
+        AB_TRY(find_cells(t, inner, &moved, report));
+    }
+    if (moved) {
+        if (!place_points(t) && (!list_tiles(t) || !place_points(t))) goto no_memory;
+        sort_points(t);
+    }
+#pragma omp parallel for schedule(static) if (count >= PARALLEL_FROM)
+    for (size_t k = 0; k < t->tile_count; ++k) scatter(t, inner, k);
+#pragma omp parallel for schedule(static) if (count >= PARALLEL_FROM)
+    for (size_t k = 0; k < t->tile_count; ++k) assemble(t, k);
+    return AB_OK;
+no_memory:
+    return ab_report_failure(report, "body '%s': no memory for the trace of %zu points on the grid", t->body, count);
+}
+
+void fem_trace_tiles(const fem_trace *t, ab_node_tiles *tiles) {
+    *tiles = (ab_node_tiles){.count = t->tile_count, .key = t->key, .mass = t->mass, .stride = 1, .version = t->version};
+}
+
+/* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
+
+/* The points that can reach a node stand in the four cells around it: places in `order`, cells in the order left below, right below, left above, right above. */
+static void cells_around(const fem_trace *t, uint32_t node, uint32_t first[4], uint32_t last[4]) {
+    const uint32_t home = node / AB_TILE_NODES;
+    const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE;
+    for (int c = 0; c < 4; ++c) {
+        const int ci = i - 1 + c % 2, cj = j - 1 + c / 2, dx = ci < 0 ? -1 : 0, dy = cj < 0 ? -1 : 0;
+        const int32_t k = dx || dy ? t->tiles[home].around[(dy + 1) * 3 + dx + 1] : (int32_t)home;
+        first[c] = last[c] = 0;
+        if (k < 0) continue;
+        const uint32_t *start = t->cell_start + (size_t)k * AB_TILE_NODES + (cj - dy * AB_TILE) * AB_TILE + ci - dx * AB_TILE;
+        first[c] = start[0];
+        last[c] = start[1];
+    }
+}
+
+static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t needs) {
+    if (count + 1 > t->capacity) {
+        const size_t n = (2 * count + 64) & ~(size_t)7;
+        if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->node_mass, n, sizeof(double)) ||
+            !grow(&t->mass_gradient, 2 * n, sizeof(double)) || !grow(&t->area_vector, 2 * n, sizeof(double)) ||
+            !grow(&t->near_start, n, sizeof(size_t)) || !grow(&t->stencil_start, n, sizeof(size_t)) ||
+            !grow(&t->node_key, n, sizeof(uint64_t)))
+            return false;
+        t->capacity = n;
+    }
+    if (!(needs & AB_NEED_NEAR_POINTS)) return true;
+    size_t near = 0;
+    for (size_t k = 0; k < count; ++k) {
+        uint32_t first[4], last[4];
+        cells_around(t, nodes[k], first, last);
+        for (int c = 0; c < 4; ++c) near += last[c] - first[c];
+    }
+    if (near > t->near_capacity) {
+        const size_t n = (2 * near + 64) & ~(size_t)7;
+        if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) return false;
+        t->near_capacity = n;
+    }
+    return true;
+}
+
+/* Adds `share` to the weight of a dof in the stencil that begins at `begin` and ends at *end. */
+static bool add_weight(fem_trace *t, size_t begin, size_t *end, uint32_t dof, double share) {
+    if (dof >= t->place_capacity) {
+        const size_t n = 2 * (size_t)dof + 64;
+        if (!grow(&t->place, n, sizeof *t->place)) return false;
+        memset(t->place + t->place_capacity, 0, (n - t->place_capacity) * sizeof *t->place);
+        t->place_capacity = n;
+    }
+    const size_t at = t->place[dof];
+    if (at >= begin && at < *end && t->stencil_dof[at] == dof) {
+        t->stencil_weight[at] += share;
+        return true;
+    }
+    if (*end == t->stencil_capacity) {
+        const size_t n = 2 * t->stencil_capacity + 256;
+        if (!grow(&t->stencil_dof, n, sizeof *t->stencil_dof) || !grow(&t->stencil_weight, n, sizeof *t->stencil_weight)) return false;
+        t->stencil_capacity = n;
+    }
+    t->place[dof] = *end;
+    t->stencil_dof[*end] = dof;
+    t->stencil_weight[(*end)++] = share;
+    return true;
+}
+
+/* Sums over the points around node k of the list. *stencil, *near: ends of both lists so far. */
+static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, size_t k, uint32_t needs, size_t *stencil, size_t *near) {
+    const size_t ld = t->capacity, begin = *stencil;
+    const double *x = inner->position, *y = x + inner->ld;
+    const double at[2] = {t->position[k], t->position[ld + k]};
+    double gradient[2] = {0.0}, area[2] = {0.0}, mass = 0.0;
+    uint32_t first[4], last[4];
+    cells_around(t, node, first, last);
+    for (int c = 0; c < 4; ++c) {
+        const double slope[2] = {c % 2 ? -t->inverse_h : t->inverse_h, c / 2 ? -t->inverse_h : t->inverse_h};
+        for (uint32_t s = first[c]; s < last[c]; ++s) {
+            const uint32_t q = t->order[s];
+            const double nx = fmax(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0), ny = fmax(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
+            const double m = inner->mass[q], v = inner->volume[q], gx = slope[0] * ny, gy = slope[1] * nx, value = nx * ny;
+            gradient[0] += m * gx;
+            gradient[1] += m * gy;
+            area[0] += v * gx;
+            area[1] += v * gy;
+            if (!(value > 0.0)) continue;
+            mass += value * m;
+            for (size_t e = inner->start[q]; e < inner->start[q + 1]; ++e)
+                if (!add_weight(t, begin, stencil, inner->dof[e], value * m * inner->weight[e])) return false;
+            if (!(needs & AB_NEED_NEAR_POINTS)) continue;
+            t->near_position[*near] = x[q];
+            t->near_position[t->near_capacity + *near] = y[q];
+            for (size_t r = 0; r < 3; ++r) t->near_extent[r * t->near_capacity + *near] = inner->extent[r * inner->ld + q];
+            ++*near;
+        }
+    }
+    for (size_t e = begin; e < *stencil; ++e) t->stencil_weight[e] /= mass;
+    for (size_t d = 0; d < 2; ++d) {
+        t->mass_gradient[d * ld + k] = gradient[d];
+        t->area_vector[d * ld + k] = area[d];
+    }
+    return true;
+}
+
+ab_status fem_trace_nodes(fem_trace *t, const fem_inner *inner, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace,
+                          ab_report *report) {
+    if (!reserve(t, nodes, count, needs)) goto no_memory;
+    const size_t ld = t->capacity;
+    size_t stencil = 0, near = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const uint64_t tile_key = t->key[nodes[k] / AB_TILE_NODES];
+        const int32_t n = (int32_t)(nodes[k] % AB_TILE_NODES), i = ab_tile_x(tile_key) * AB_TILE + n % AB_TILE,
+                      j = ab_tile_y(tile_key) * AB_TILE + n / AB_TILE;
+        t->position[k] = t->h * i;
+        t->position[ld + k] = t->h * j;
+        t->node_mass[k] = t->mass[nodes[k]];
+        t->node_key[k] = ab_tile_key(i, j);
+        t->stencil_start[k] = stencil;
+        t->near_start[k] = near;
+        if (!look_around(t, inner, nodes[k], k, needs, &stencil, &near)) goto no_memory;
+    }
+    t->stencil_start[count] = stencil;
+    t->near_start[count] = near;
+    *trace = (ab_trace){
+        .struct_size = sizeof *trace,
+        .dimension = 2,
+        .body = t->body,
+        .stiffness = t->modulus,
+        .cell = t->h,
+        .count = count,
+        .ld = ld,
+        .position = t->position,
+        .stencil_start = t->stencil_start,
+        .stencil_dof = t->stencil_dof,
+        .stencil_weight = t->stencil_weight,
+        .key = t->node_key,
+        .mass = t->node_mass,
+        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL,
+        .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
+        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL,
+        .near_ld = t->near_capacity,
+        .near_position = t->near_position,
+        .near_extent = t->near_extent,
+    };
+    return AB_OK;
+no_memory:
+    return ab_report_failure(report, "body '%s': no memory for %zu nodes in contact", t->body, count);
+}
