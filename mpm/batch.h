@@ -20,8 +20,8 @@ typedef struct mpm_long_batch {
     double density[LONG] __attribute__((aligned(64)));
     double dissipation[LONG] __attribute__((aligned(64)));
     double wave_speed[LONG] __attribute__((aligned(64)));
-    double state0[MAX_STATE][LONG] __attribute__((aligned(64)));
-    double state1[MAX_STATE][LONG] __attribute__((aligned(64)));
+    double state0[AB_MATERIAL_STATES][LONG] __attribute__((aligned(64)));
+    double state1[AB_MATERIAL_STATES][LONG] __attribute__((aligned(64)));
     uint8_t flag[LONG];
 } mpm_long_batch;
 
@@ -91,10 +91,10 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
         for (int c = 0; c < 4; ++c) v8_store(batch->spatial[c] + at, v8_load(h[c] + at) * rate);
     }
     if (rows.states) {
-        double turned[MAX_STATE][8] __attribute__((aligned(64)));
+        double turned[AB_MATERIAL_STATES][8] __attribute__((aligned(64)));
         const double *state = block + 8 * rows.state;
         if (batch->turns) { /* vectors and tensors turn with the material before it sees them */
-            mpm_turn_state(batch->class_, state, cosine, sine, turned[0]);
+            ab_state_turn(batch->class_, state, cosine, sine, turned[0]);
             state = turned[0];
         }
         for (int s = 0; s < rows.states; ++s) v8_store(batch->state0[s] + at, v8_load(state + 8 * s));

@@ -357,12 +357,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     body->material = scene->materials + spec->material;
     mpm_rows_plan(body);
     ab_fill *fill = NULL;
-    ab_status status = AB_OK;
-    if (body->rows.states > MAX_STATE)
-        status = ab_report_error(report, body->material->mark, "material '%s' keeps %d numbers per point; at most %d are possible",
-                                 body->material->name, body->rows.states, MAX_STATE);
-    if (status == AB_OK)
-        status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
+    ab_status status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;

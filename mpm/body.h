@@ -10,13 +10,14 @@
 #define AB_MPM_BODY_H
 
 #include "core/domain.h"
+#include "core/material.h"
 #include "core/vector.h"
 #include "mpm/fill.h"
 
 /* Rows of a block every body has; the others are behind them where the plan asks for them. */
 enum { ROW_X = 0, ROW_V = 2, ROW_NEXT = 4, ROW_MASS = 6, ROW_VOLUME = 7, ROW_STRESS = 8, ROW_OTHERS = 12 };
 
-enum { PATCH = AB_TILE + 4, PATCH_NODES = PATCH * PATCH, PATCH_DOUBLES = 8 * PATCH_NODES, MAX_STATE = 32 };
+enum { PATCH = AB_TILE + 4, PATCH_NODES = PATCH * PATCH, PATCH_DOUBLES = 8 * PATCH_NODES };
 
 /* A node in a patch: mass, momentum, and the internal force in two halves (terms with dN/dx, terms with dN/dy) that assembly adds. */
 enum { NODE_MASS = 0, NODE_MOMENTUM = 1, NODE_FORCE_X = 4, NODE_FORCE_Y = 6 };
@@ -147,10 +148,8 @@ ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
 ab_status mpm_points_sort(mpm_body *, ab_report *); /* after begin's bounds were broken, or the first time */
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
 
-/* material.c: the material's instance, its start, and how its states turn. */
-ab_status mpm_material_start(mpm_body *, ab_report *);
-int mpm_state_components(uint32_t shape); /* numbers that a state of this enum ab_shape keeps per point */
-void mpm_turn_state(const ab_class *, const double *state, v8 cosine, v8 sine, double *turned); /* rows of eight points; plane rotation */
+/* material.c */
+ab_status mpm_material_start(mpm_body *, ab_report *); /* the material's instance; stress and states of the points at the start */
 
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,

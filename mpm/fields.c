@@ -29,7 +29,7 @@ ab_status mpm_fields_create(mpm_body *body, ab_report *report) {
     }
     for (uint32_t s = 0; s < class_->nstate; ++s)
         body->fields[body->field_count++] =
-            (ab_field){class_->state[s].name, class_->state[s].unit, mpm_state_components(class_->state[s].shape), ""};
+            (ab_field){class_->state[s].name, class_->state[s].unit, ab_state_components(class_->state[s].shape), ""};
     return AB_OK;
 }
 
@@ -52,7 +52,7 @@ static int row_of(const mpm_body *body, const char *field) {
     int row = body->rows.state;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         if (!strcmp(field, class_->state[s].name)) return row;
-        row += mpm_state_components(class_->state[s].shape);
+        row += ab_state_components(class_->state[s].shape);
     }
     return -1;
 }

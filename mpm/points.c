@@ -19,8 +19,8 @@ void mpm_rows_plan(mpm_body *body) {
     if (gap || (gimp && body->contiguous)) rows.extent = rows.count, rows.count += 3;
     if (gimp) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
-    for (uint32_t s = 0; s < class_->nstate; ++s)
-        rows.states += mpm_state_components(class_->state[s].shape), rows.turns = rows.turns || class_->state[s].shape != AB_SCALAR;
+    rows.states = ab_state_count(class_);
+    rows.turns = ab_state_turns(class_);
     if (rows.states) rows.state = rows.count, rows.count += rows.states;
     body->rows = rows;
 }
