@@ -2,7 +2,8 @@
  *
  * results.h5, once a run has ended:
  *   /frame_000000            attributes time, time_unit, step
- *     /<body>                one group a body: position, id, body and the fields asked for
+ *     /<body>                one group a body: position, id, body and the fields asked for. In the first frame, and in each that has another number of rows:
+ *                            vertices (0, 1, 2 ...: a cloud of points) or connectivity (the nodes of each element)
  *     /all                   the same rows of every body one after the other, as virtual datasets: no second copy of the data
  * Every dataset has the attributes "unit" and "components". Vectors have three components, symmetric tensors six in the order
  * in which ParaView names and uses them (xx yy zz xy yz xz). That is why the XDMF calls them a Matrix: its own Tensor6 means another order, which
@@ -34,10 +35,18 @@ typedef struct ab_xdmf_field {
     bool integer;
 } ab_xdmf_field;
 
+typedef struct ab_xdmf_grid {     /* /frame/group of results.h5 */
+    size_t frame, topology_frame; /* topology_frame: the one that holds `vertices` or `connectivity` */
+    const char *group;
+    double time; /* s */
+    size_t points;
+    size_t cells; /* elements of `cell_nodes` (4 or 8) nodes; 0: each point is a vertex */
+    int cell_nodes;
+} ab_xdmf_grid;
+
 ab_status ab_xdmf_create(const char *path, const char *title, ab_xdmf **xdmf, ab_report *report);
-/* Adds a grid for /frame/group of results.h5 and writes the file anew, in one piece. topology_frame: the frame that holds `vertices`. */
-ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const char *group, double time, size_t points,
-                      const ab_xdmf_field *fields, size_t field_count, ab_report *report);
+/* Adds a grid and writes the file anew, in one piece. */
+ab_status ab_xdmf_add(ab_xdmf *xdmf, const ab_xdmf_grid *grid, const ab_xdmf_field *fields, size_t field_count, ab_report *report);
 ab_status ab_xdmf_finish(ab_xdmf *xdmf, ab_report *report); /* writes what a very long series has held back */
 void ab_xdmf_destroy(ab_xdmf *xdmf);
 

@@ -20,7 +20,8 @@ typedef struct column {              /* a dataset of each frame and body */
 typedef struct frame_record {
     size_t *points; /* per body */
     size_t total;
-    size_t *topology; /* per body, and of the cloud last: the frame that holds `vertices` for this number of points */
+    size_t *cells;    /* elements per body; 0: a cloud of points */
+    size_t *topology; /* per body, and of the cloud last: the frame that holds `vertices` or `connectivity` for this number of them */
     double time;
     long step;
     off_t bytes;
@@ -37,7 +38,7 @@ struct ab_frames {
     size_t count, capacity;
     double *values, *rows; /* as a body gives them; as the file has them */
     size_t value_capacity, row_capacity;
-    ab_xdmf *cloud, **of_body; /* of_body: NULL where there is one body */
+    ab_xdmf *cloud, **of_body; /* of_body[b]: NULL where body b is all there is, and is a cloud */
 };
 
 /* ---- results_data.c ---- */
@@ -55,6 +56,7 @@ hid_t ab_hdf5_space(size_t points, int components);
 int ab_hdf5_dataset(hid_t group, const char *name, const char *unit, const char *names, hid_t stored, hid_t given, hid_t space,
                     hid_t creation, const void *values);
 int ab_hdf5_vertices(hid_t group, size_t points, void *scratch);
+int ab_hdf5_connectivity(hid_t group, const ab_cells *cells);
 
 /* ---- results_hdf5.c ---- */
 

@@ -90,3 +90,15 @@ int ab_hdf5_vertices(hid_t group, size_t points, void *scratch) {
     H5Sclose(space);
     return result;
 }
+
+/* The nodes of each element, as rows of the group's other datasets. */
+int ab_hdf5_connectivity(hid_t group, const ab_cells *cells) {
+    static const char *const names[] = {"corner0 corner1 corner2 corner3",
+                                        "corner0 corner1 corner2 corner3 middle01 middle12 middle23 middle30"};
+    const hsize_t size[2] = {cells->count, (hsize_t)cells->nodes};
+    const hid_t space = H5Screate_simple(2, size, NULL);
+    const int result = ab_hdf5_dataset(group, "connectivity", "1", names[cells->nodes > 4], H5T_STD_I32LE, H5T_NATIVE_UINT32, space,
+                                       H5P_DEFAULT, cells->connectivity);
+    H5Sclose(space);
+    return result;
+}

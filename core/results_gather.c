@@ -77,7 +77,8 @@ static int gather(ab_frames *frames, const char *path, off_t bytes, ab_report *r
 
 ab_status ab_frames_finish(ab_frames *frames, ab_report *report) {
     if (frames->cloud != NULL) AB_TRY(ab_xdmf_finish(frames->cloud, report));
-    for (size_t b = 0; frames->of_body != NULL && b < frames->bodies; b++) AB_TRY(ab_xdmf_finish(frames->of_body[b], report));
+    for (size_t b = 0; frames->of_body != NULL && b < frames->bodies; b++)
+        if (frames->of_body[b] != NULL) AB_TRY(ab_xdmf_finish(frames->of_body[b], report));
     if (frames->count == 0) {
         rmdir(frames->frame_folder);
         return AB_OK;

@@ -27,6 +27,12 @@ static const ab_field *field_of(const ab_domain *domain, const char *name) {
     return NULL;
 }
 
+static ab_cells cells_of(const ab_domain *domain) {
+    ab_cells cells = {0};
+    if (domain->ops->cells != NULL) domain->ops->cells(domain, &cells);
+    return cells;
+}
+
 static ab_status column_add(ab_frames *frames, const char *name, ab_report *report) {
     for (size_t c = 0; c < frames->column_count; c++)
         if (strcmp(frames->columns[c]->name, name) == 0) return AB_OK;
@@ -115,10 +121,11 @@ static ab_status xdmf_open(ab_frames *frames, ab_report *report) {
     if (path == NULL) return ab_report_failure(report, "no memory for the output");
     ab_status status = ab_xdmf_create(path, title, &frames->cloud, report);
     free(path);
-    if (status != AB_OK || frames->bodies < 2) return status;
+    if (status != AB_OK) return status;
     frames->of_body = calloc(frames->bodies, sizeof *frames->of_body);
     if (frames->of_body == NULL) return ab_report_failure(report, "no memory for the output");
     for (size_t b = 0; b < frames->bodies && status == AB_OK; b++) {
+        if (frames->bodies < 2 && cells_of(frames->domains[b]).count == 0) continue;
         char name[300];
         snprintf(name, sizeof name, "results_%.250s.xdmf", scene->bodies[b].name);
         for (char *c = name; *c != '\0'; c++)
@@ -242,6 +249,12 @@ hid_t ab_frames_group(const frame_record *record, const char *name, hid_t file) 
     return H5I_INVALID_HID;
 }
 
+/* How the rows of a body hang together. The scratch has held fields of that many points before. */
+static int topology_write(const ab_frames *frames, size_t body, size_t points, hid_t group) {
+    const ab_cells cells = cells_of(frames->domains[body]);
+    return cells.count > 0 ? ab_hdf5_connectivity(group, &cells) : ab_hdf5_vertices(group, points, frames->rows);
+}
+
 static ab_status frame_fill(ab_frames *frames, size_t number, hid_t file, const char *name, ab_report *report) {
     const frame_record *record = &frames->records[number];
     const hid_t frame = ab_frames_group(record, name, file);
@@ -252,7 +265,7 @@ static ab_status frame_fill(ab_frames *frames, size_t number, hid_t file, const 
         if (group < 0) status = ab_hdf5_trouble("build a frame", report);
         for (size_t c = 0; c < frames->column_count && status == AB_OK; c++)
             if (frames->columns[c]->of_body[b]) status = column_write(frames, frames->columns[c], b, record->points[b], group, report);
-        if (status == AB_OK && record->topology[b] == number && ab_hdf5_vertices(group, record->points[b], frames->rows) < 0)
+        if (status == AB_OK && record->topology[b] == number && topology_write(frames, b, record->points[b], group) < 0)
             status = ab_hdf5_trouble("build a frame", report);
         if (group >= 0) H5Gclose(group);
     }
@@ -271,9 +284,10 @@ static frame_record *record_new(ab_frames *frames) {
     }
     frame_record *record = &frames->records[frames->count];
     *record = (frame_record){0};
-    record->points = calloc(2 * frames->bodies + 1, sizeof *record->points);
+    record->points = calloc(3 * frames->bodies + 1, sizeof *record->points);
     if (record->points == NULL) return NULL;
-    record->topology = record->points + frames->bodies;
+    record->cells = record->points + frames->bodies;
+    record->topology = record->cells + frames->bodies;
     return record;
 }
 
@@ -282,14 +296,20 @@ static ab_status xdmf_add(ab_frames *frames, size_t number, ab_report *report) {
     ab_xdmf_field fields[MOST_FIELDS];
     for (size_t b = 0; b <= frames->bodies; b++) {
         const bool cloud = b == frames->bodies;
-        if (!cloud && frames->of_body == NULL) continue;
+        if (!cloud && frames->of_body[b] == NULL) continue;
         size_t count = 0;
         for (size_t c = 0; c < frames->column_count; c++)
             if (cloud || frames->columns[c]->of_body[b])
                 fields[count++] = (ab_xdmf_field){frames->columns[c]->name, frames->columns[c]->written, frames->columns[c]->integer};
-        AB_TRY(ab_xdmf_add(cloud ? frames->cloud : frames->of_body[b], number, record->topology[b],
-                           cloud ? "all" : frames->scene->bodies[b].name, record->time, cloud ? record->total : record->points[b], fields,
-                           count, report));
+        const ab_cells cells = cloud ? (ab_cells){0} : cells_of(frames->domains[b]);
+        const ab_xdmf_grid grid = {.frame = number,
+                                   .topology_frame = record->topology[b],
+                                   .group = cloud ? "all" : frames->scene->bodies[b].name,
+                                   .time = record->time,
+                                   .points = cloud ? record->total : record->points[b],
+                                   .cells = cells.count,
+                                   .cell_nodes = cells.nodes};
+        AB_TRY(ab_xdmf_add(cloud ? frames->cloud : frames->of_body[b], &grid, fields, count, report));
     }
     return AB_OK;
 }
@@ -300,10 +320,13 @@ ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *
     if (record == NULL) return ab_report_failure(report, "no memory for frame %zu", number);
     record->time = time;
     record->step = step;
-    for (size_t b = 0; b < frames->bodies; b++) record->total += record->points[b] = frames->domains[b]->ops->count(frames->domains[b]);
     const frame_record *before = number > 0 ? &frames->records[number - 1] : NULL;
-    for (size_t b = 0; b < frames->bodies; b++)
-        record->topology[b] = before && before->points[b] == record->points[b] ? before->topology[b] : number;
+    for (size_t b = 0; b < frames->bodies; b++) {
+        record->total += record->points[b] = frames->domains[b]->ops->count(frames->domains[b]);
+        record->cells[b] = cells_of(frames->domains[b]).count;
+        const bool same = before && before->points[b] == record->points[b] && before->cells[b] == record->cells[b];
+        record->topology[b] = same ? before->topology[b] : number;
+    }
     record->topology[frames->bodies] = before && before->total == record->total ? before->topology[frames->bodies] : number;
     if (record->total > INT32_MAX)
         return ab_report_failure(report, "a frame of %zu points is more than the result files can number", record->total);

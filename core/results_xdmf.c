@@ -1,8 +1,10 @@
-/* results_xdmf.c: the text that tells ParaView and meshio what lies where in results.h5. One temporal collection of point clouds per file.
+/* results_xdmf.c: the text that tells ParaView and meshio what lies where in results.h5. One temporal collection of grids per file.
  *
- * results.xdmf shows all bodies as one cloud with a `body` number; with several bodies results_<body>.xdmf shows each alone. (One file
- * with a block per body inside each time would suit ParaView, too, but meshio's time-series reader takes flat collections only.) Points move:
- * each grid has its own geometry. meshio reads geometry once, from the first frame, so `position` stands among the attributes as well. */
+ * results.xdmf shows all bodies as one cloud of points with a `body` number. results_<body>.xdmf shows one body alone, with its elements where it has
+ * them; a scene of one cloud does without. No file shows elements and clouds side by side, because no form of that is read alike by both: a block per body
+ * inside each time would suit ParaView, but meshio's time-series reader takes flat collections only; a topology of mixed cells is read by both, but meshio
+ * knows no element of eight nodes there and wants a vertex without the count that ParaView wants. Points move: each grid has its own
+ * geometry. meshio reads geometry once, from the first frame, so `position` stands among the attributes as well. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -60,18 +62,23 @@ static void add_data(ab_xdmf *xdmf, const char *type, int precision, size_t poin
     ab_text_add(text, "/%s</DataItem>", name);
 }
 
-ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const char *group, double time, size_t points,
-                      const ab_xdmf_field *fields, size_t field_count, ab_report *report) {
+ab_status ab_xdmf_add(ab_xdmf *xdmf, const ab_xdmf_grid *grid, const ab_xdmf_field *fields, size_t field_count, ab_report *report) {
     ab_text *text = &xdmf->text;
+    const bool meshed = grid->cells > 0;
+    const size_t cells = meshed ? grid->cells : grid->points;
+    const int nodes = meshed ? grid->cell_nodes : 1;
     ab_text_add(text, "<Grid Name=\"");
     ab_text_add_xml(text, xdmf->title);
-    ab_text_add(text,
-                "\" GridType=\"Uniform\">\n<Time Value=\"%.17g\"/>\n<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%zu\" "
-                "NodesPerElement=\"1\">",
-                time, points);
-    add_data(xdmf, "Int", 4, points, 1, topology_frame, group, "vertices");
+    ab_text_add(text, "\" GridType=\"Uniform\">\n<Time Value=\"%.17g\"/>\n<Topology TopologyType=\"%s\" NumberOfElements=\"%zu\"",
+                grid->time,
+                !meshed      ? "Polyvertex"
+                : nodes == 4 ? "Quadrilateral"
+                             : "Quadrilateral_8",
+                cells);
+    ab_text_add(text, meshed ? ">" : " NodesPerElement=\"1\">");
+    add_data(xdmf, "Int", 4, cells, nodes, grid->topology_frame, grid->group, meshed ? "connectivity" : "vertices");
     ab_text_add(text, "</Topology>\n<Geometry GeometryType=\"XYZ\">");
-    add_data(xdmf, "Float", 8, points, 3, frame, group, "position");
+    add_data(xdmf, "Float", 8, grid->points, 3, grid->frame, grid->group, "position");
     ab_text_add(text, "</Geometry>\n");
     for (size_t f = 0; f < field_count; f++) {
         const int n = fields[f].components;
@@ -80,7 +87,7 @@ ab_status ab_xdmf_add(ab_xdmf *xdmf, size_t frame, size_t topology_frame, const 
                     : n == 3 ? "Vector"
                     : n == 9 ? "Tensor"
                              : "Matrix");
-        add_data(xdmf, fields[f].integer ? "Int" : "Float", 8, points, n > 1 ? n : 0, frame, group, fields[f].name);
+        add_data(xdmf, fields[f].integer ? "Int" : "Float", 8, grid->points, n > 1 ? n : 0, grid->frame, grid->group, fields[f].name);
         ab_text_add(text, "</Attribute>\n");
     }
     ab_text_add(text, "</Grid>\n");

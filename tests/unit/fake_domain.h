@@ -1,5 +1,6 @@
 /* fake_domain.h: a body with numbers that are known, for the tests of what a run leaves. Point p (id p) starts at (p, 2p) and moves with velocity
- * (1, 0.5); stress (10, 20, 30, 4) times (p + 1); mass p + 1; volume 2. Points with id < `lost` have left. */
+ * (1, 0.5); stress (10, 20, 30, 4) times (p + 1); mass p + 1; volume 2. Points with id < `lost` have left. fake_mesh makes nodes of
+ * them, in other places: eight go round one quadratic element of 2 x 2, any other number is a strip of square elements, two nodes at each x. */
 #ifndef FAKE_DOMAIN_H
 #define FAKE_DOMAIN_H
 
@@ -31,6 +32,16 @@ static inline const ab_field *fake_fields(const ab_domain *domain, size_t *count
     return fields;
 }
 
+static inline bool fake_is_mesh(const ab_domain *domain) { return domain->ops->cells != NULL; }
+
+/* Where point or node `id` stands at time 0. */
+static inline void fake_place(const ab_domain *domain, size_t id, double place[2]) {
+    static const double round[8][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+    const bool mesh = fake_is_mesh(domain), eight = mesh && ((const fake_domain *)domain)->start == 8;
+    place[0] = eight ? round[id][0] : mesh ? (double)(id / 2) : (double)id;
+    place[1] = eight ? round[id][1] : mesh ? (double)(id % 2) : 2 * (double)id;
+}
+
 static inline ab_status fake_read(const ab_domain *domain, const char *field, double *values, ab_report *report) {
     fake_domain *fake = (fake_domain *)(uintptr_t)domain;
     const size_t count = fake_count(domain);
@@ -43,9 +54,10 @@ static inline ab_status fake_read(const ab_domain *domain, const char *field, do
             values[k] = id + 1;
         else if (strcmp(field, "volume") == 0)
             values[k] = 2;
-        else if (strcmp(field, "position") == 0)
-            values[2 * k] = id + t, values[2 * k + 1] = 2 * id + 0.5 * t;
-        else if (strcmp(field, "velocity") == 0)
+        else if (strcmp(field, "position") == 0) {
+            fake_place(domain, k + fake->lost, values + 2 * k);
+            values[2 * k] += t, values[2 * k + 1] += 0.5 * t;
+        } else if (strcmp(field, "velocity") == 0)
             values[2 * k] = 1, values[2 * k + 1] = 0.5;
         else if (strcmp(field, "stress") == 0)
             for (int c = 0; c < 4; c++) values[4 * k + (size_t)c] = (double[]){10, 20, 30, 4}[c] * (id + 1);
@@ -55,7 +67,29 @@ static inline ab_status fake_read(const ab_domain *domain, const char *field, do
     return AB_OK;
 }
 
+enum { FAKE_ELEMENTS = 8 };
+
+static inline void fake_cells(const ab_domain *domain, ab_cells *cells) {
+    static const uint32_t eight[8] = {0, 2, 4, 6, 1, 3, 5, 7};
+    static uint32_t four[FAKE_ELEMENTS][4];
+    const size_t count = fake_count(domain);
+    for (uint32_t e = 0; e < FAKE_ELEMENTS; e++)
+        for (uint32_t a = 0; a < 4; a++) four[e][a] = 2 * e + (uint32_t[]){0, 2, 3, 1}[a];
+    if (count == 8)
+        *cells = (ab_cells){1, 8, eight};
+    else
+        *cells = (ab_cells){count / 2 - 1, 4, four[0]};
+}
+
+static inline void fake_reaction(const ab_domain *domain, double force[3]) {
+    const double t = ((const fake_domain *)domain)->time;
+    force[0] = 2 * t, force[1] = -3 * t, force[2] = 5 * t;
+}
+
 static const ab_domain_ops fake_ops = {.method = "fake", .count = fake_count, .fields = fake_fields, .read = fake_read};
+
+static const ab_domain_ops fake_mesh_ops = {
+    .method = "fake mesh", .cells = fake_cells, .reaction = fake_reaction, .count = fake_count, .fields = fake_fields, .read = fake_read};
 
 /* A scene of two such bodies, and the view that a scheduler would keep of it. */
 typedef struct fake_run {
@@ -80,7 +114,11 @@ static inline void fake_update(fake_run *run, long step, double dt) {
         fake->time = run->view.time;
         const double n = (double)fake->start, mass = n * (n + 1) / 2;
         double moment[2] = {0, 0};
-        for (double id = 0; id < n; id++) moment[0] += (id + 1) * (id + fake->time), moment[1] += (id + 1) * (2 * id + 0.5 * fake->time);
+        for (size_t id = 0; id < fake->start; id++) {
+            double place[2];
+            fake_place(&fake->base, id, place);
+            moment[0] += (double)(id + 1) * (place[0] + fake->time), moment[1] += (double)(id + 1) * (place[1] + 0.5 * fake->time);
+        }
         run->motion[b] = (ab_motion){.mass = mass,
                                      .momentum = {mass, 0.5 * mass, 0},
                                      .angular_momentum = {0, 0, moment[0] * 0.5 - moment[1]},
@@ -124,6 +162,12 @@ static inline fake_run *fake_create(size_t first, size_t second) {
     fake_update(run, 0, 0.1);
     memcpy(run->energy_start, run->energy, sizeof run->energy);
     return run;
+}
+
+/* Before anybody has looked at the run. */
+static inline void fake_mesh(fake_run *run, int body) {
+    run->domains[body].base.ops = &fake_mesh_ops;
+    fake_update(run, 0, 0.1);
 }
 
 #endif

@@ -236,6 +236,78 @@ static void test_history_alone_when_no_output_is_asked_for(void **state) {
     free(run);
 }
 
+static void check_elements(const char *name, size_t count, const double *wanted) {
+    const hid_t file = H5Fopen(path_of("results.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+    double values[16];
+    read_numbers(file, name, values, count);
+    for (size_t k = 0; k < count; k++) assert_float_equal(values[k], wanted[k], 0);
+    H5Fclose(file);
+}
+
+static bool in_results(const char *name) {
+    const hid_t file = H5Fopen(path_of("results.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const bool is = H5Lexists(file, name, H5P_DEFAULT) > 0;
+    H5Fclose(file);
+    return is;
+}
+
+static void check_text(const char *name, const char *wanted) {
+    char *text = text_of(name);
+    if (strstr(text, wanted) == NULL) fail_msg("'%s' is not in %s", wanted, name);
+    free(text);
+}
+
+static void test_elements_are_shown_as_such(void **state) {
+    (void)state;
+    static const double eight[8] = {0, 2, 4, 6, 1, 3, 5, 7}, four[8] = {0, 2, 3, 1, 2, 4, 5, 3};
+    fake_run *run = fake_create(8, 6);
+    ab_report *report = ab_report_create();
+    ab_results *results = NULL;
+    size_t missed = 9;
+    fake_mesh(run, 0), fake_mesh(run, 1);
+    ask_for_everything(run);
+    assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
+    assert_int_equal(run_steps(results, run, 0, 10, report), AB_OK);
+    assert_int_equal(ab_results_close(results, &run->view, &facts, &missed, report), AB_OK);
+    ab_results_destroy(results);
+    check_elements("/frame_000000/block/connectivity", 8, eight);
+    check_elements("/frame_000000/plane/connectivity", 8, four);
+    assert_false(in_results("/frame_000001/block/connectivity")); /* once */
+    assert_false(in_results("/frame_000000/block/vertices"));
+    assert_true(in_results("/frame_000000/all/vertices"));
+    check_text("results_block.xdmf", "TopologyType=\"Quadrilateral_8\" NumberOfElements=\"1\">");
+    check_text("results_block.xdmf", "Dimensions=\"1 8\" Format=\"HDF\">results.h5:/frame_000000/block/connectivity<");
+    check_text("results_block.xdmf", "Dimensions=\"8 3\" Format=\"HDF\">results.h5:/frame_000002/block/position<");
+    check_text("results_plane.xdmf", "TopologyType=\"Quadrilateral\" NumberOfElements=\"2\">");
+    check_text("results_plane.xdmf", "Dimensions=\"2 4\" Format=\"HDF\">results.h5:/frame_000000/plane/connectivity<");
+    check_text("results.xdmf", "TopologyType=\"Polyvertex\" NumberOfElements=\"14\"");
+    ab_report_destroy(report);
+    free(run);
+}
+
+static void test_a_body_of_elements_alone_has_its_own_file(void **state) {
+    (void)state;
+    fake_run *run = fake_create(6, 3);
+    ab_report *report = ab_report_create();
+    run->scene.body_count = 1;
+    run->scene.contact_count = 0;
+    run->scene.has_output = true;
+    for (int meshed = 0; meshed < 2; meshed++) { /* a cloud alone is in results.xdmf already */
+        ab_results *results = NULL;
+        size_t missed = 9;
+        if (meshed) fake_mesh(run, 0);
+        assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
+        assert_int_equal(run_steps(results, run, 0, 3, report), AB_OK);
+        assert_int_equal(ab_results_close(results, &run->view, &facts, &missed, report), AB_OK);
+        ab_results_destroy(results);
+        assert_true(exists("results.xdmf"));
+        assert_int_equal(exists("results_block.xdmf"), meshed);
+    }
+    check_text("results_block.xdmf", "NumberOfElements=\"2\">");
+    ab_report_destroy(report);
+    free(run);
+}
+
 static void test_points_that_left(void **state) {
     (void)state;
     fake_run *run = fake_create(4, 3);
@@ -370,6 +442,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_a_whole_run, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_nothing_is_written_for_a_wrong_scene, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_history_alone_when_no_output_is_asked_for, fresh_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_elements_are_shown_as_such, fresh_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_a_body_of_elements_alone_has_its_own_file, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_points_that_left, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_a_full_disk_takes_nothing_back, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_no_room_to_gather_keeps_the_links, fresh_folder, remove_folder),

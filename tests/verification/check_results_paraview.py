@@ -26,6 +26,24 @@ def compare(where, name, array, stored):
         problems.append(f"{where}: {name} {values.shape} differs from results.h5 {stored.shape}")
 
 
+def check_cells(where, data, points, connectivity):
+    """One vertex a point, or the elements of results.h5 (nodes of a mesh never leave, so the first frame's are those of all)."""
+    if connectivity is None:
+        if data.GetNumberOfCells() != points:
+            problems.append(f"{where} has {data.GetNumberOfCells()} vertices")
+        return
+    wanted = connectivity[()]
+    kind = {4: 9, 8: 23}[wanted.shape[1]]  # VTK_QUAD, VTK_QUADRATIC_QUAD
+    if data.GetNumberOfCells() != len(wanted) or any(data.GetCellType(c) != kind for c in range(len(wanted))):
+        problems.append(f"{where}: shows {data.GetNumberOfCells()} cells, or other ones than the {len(wanted)} elements of results.h5")
+        return
+    for c, nodes in enumerate(wanted):
+        cell = data.GetCell(c)  # the same object at every call
+        if [cell.GetPointId(k) for k in range(cell.GetNumberOfPoints())] != list(nodes):
+            problems.append(f"{where}: element {c} has other nodes than in results.h5")
+            return
+
+
 def check(path, group, file):
     source = OpenDataFile(path)
     frames = sorted(file)
@@ -43,11 +61,10 @@ def check(path, group, file):
             continue
         for data in found:
             compare(f"{path}: {name}", "position", data.GetPoints().GetData(), stored["position"][()])
-            if data.GetNumberOfCells() != len(stored["id"]):
-                problems.append(f"{path}: {name} has {data.GetNumberOfCells()} vertices")
+            check_cells(f"{path}: {name}", data, len(stored["id"]), file[frames[0]][group].get("connectivity"))
             arrays = {data.GetPointData().GetArrayName(k) for k in range(data.GetPointData().GetNumberOfArrays())}
             for field in stored:
-                if field == "vertices":
+                if field in ("vertices", "connectivity"):
                     continue
                 if field not in arrays:
                     problems.append(f"{path}: {name} lacks {field}; there are {sorted(arrays)}")
