@@ -24,7 +24,8 @@ static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
         if (known) continue;
         const char *body = NULL;
         for (size_t b = 0; !body && b < scene->body_count; b++)
-            if (scene->materials[scene->bodies[b].material].loaded == material->loaded) body = scene->bodies[b].name;
+            if (scene->bodies[b].material < scene->material_count && scene->materials[scene->bodies[b].material].loaded == material->loaded)
+                body = scene->bodies[b].name;
         snprintf(why, sizeof why, body ? "material of body '%s'" : "material '%s', which no body has", body ? body : material->name);
         tell(text, number++, material->loaded->class_.name, why, material->loaded);
     }
@@ -55,6 +56,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
     if (scene->space == AB_SPACE_PLANE_STRAIN)
         tell(text, number++, "third dimension", "plane strain: no third component of velocity and force, no yz and zx of stress", NULL);
     for (size_t b = 0; b < scene->body_count; b++) {
+        if (scene->bodies[b].material >= scene->material_count) continue;
         const ab_loaded_class *loaded = scene->materials[scene->bodies[b].material].loaded;
         if (loaded->class_.nstate == 0) {
             snprintf(what, sizeof what, "%s of '%s' keeps none: no state arrays", loaded->class_.name, scene->bodies[b].name);
@@ -76,6 +78,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
         snprintf(what, sizeof what, "%.0f of %.0f cells of the grid hold no material: no memory, no time", all - cells, all);
         tell(text, number++, "empty grid", what, NULL);
     }
+    if (scene->grid_cell == 0.0) tell(text, number++, "grid", "no body and no contact looks at one", NULL);
     if (scene->damping_local == 0.0) tell(text, number++, "damping", "none is asked for", NULL);
     if (!scene->load_count) tell(text, number++, "loads", "no traction is asked for: no surface pass", NULL);
     if (!scene->output_field_count) tell(text, number++, "output", "no field is asked for: nothing but places is written", NULL);

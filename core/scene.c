@@ -27,6 +27,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_materials(r, v[TOP_MATERIALS]);
     ab_scene_take_bodies(r, v[TOP_BODIES]);
     ab_scene_take_contacts(r, v[TOP_CONTACT]);
+    ab_scene_check_grid(r, root);
     ab_scene_take_loads(r, v[TOP_LOADS]);
     ab_scene_take_monitors(r, v[TOP_MONITORS]);
     ab_scene_take_history(r, v[TOP_HISTORY]);
@@ -122,6 +123,7 @@ const ab_state *ab_scene_state_named(const ab_scene *scene, size_t body, const c
     for (size_t b = 0; b < scene->body_count; b++) {
         if (body != SIZE_MAX && b != body) continue;
         const size_t m = scene->bodies[b].material;
+        if (scene->bodies[b].method != NULL && strcmp(scene->bodies[b].method, "rigid") == 0) continue; /* nothing strains */
         if (m >= scene->material_count || scene->materials[m].loaded == NULL) continue;
         const ab_class *model = &scene->materials[m].loaded->class_;
         for (uint32_t s = 0; s < model->nstate; s++)

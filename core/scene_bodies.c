@@ -1,4 +1,4 @@
-/* scene_bodies.c: bodies by name: outline, points, basis, transfer, first velocities; and whether they lie in the grid. */
+/* scene_bodies.c: bodies by name: their method, and outline, points, basis, transfer, first velocities. */
 #include <math.h>
 #include <string.h>
 
@@ -62,25 +62,75 @@ static void take_transfer(ab_scene_reader *r, const ab_node *node, const char *w
         ab_read_number(&r->base, &ab_section_transfer.keys[TRANSFER_FLIP], v[TRANSFER_FLIP], path, &body->flip);
 }
 
-/* The whole outline must lie in the grid. */
-static void check_inside(ab_scene_reader *r, const ab_body_spec *body) {
-    const ab_scene *scene = r->scene;
-    double low[2], high[2];
-    if (scene->grid_cells[0] == 0 || scene->grid_cells[1] == 0 || !ab_shape_bounds(&body->shape, low, high)) return;
-    const double slack = 1e-9 * scene->grid_cell;
-    bool inside = true, apart = false;
-    for (int d = 0; d < 2; d++) {
-        const double from = scene->grid_from[d] - slack - 1e-12 * fabs(scene->grid_from[d]),
-                     to = scene->grid_to[d] + slack + 1e-12 * fabs(scene->grid_to[d]);
-        inside = inside && low[d] >= from && high[d] <= to;
-        apart = apart || high[d] <= from || low[d] >= to;
+enum { POINTS = 1, ELEMENTS = 2, RIGID = 4 };
+static const struct {
+    const char *name;
+    unsigned bit;
+} methods[] = {{"material-points", POINTS}, {"finite-elements", ELEMENTS}, {"rigid", RIGID}};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+static const unsigned belongs[BODY_KEYS] = {
+    [BODY_METHOD] = POINTS | ELEMENTS | RIGID,
+    [BODY_MATERIAL] = POINTS | ELEMENTS | RIGID,
+    [BODY_SHAPE] = POINTS | RIGID,
+    [BODY_FILL] = POINTS,
+    [BODY_BASIS] = POINTS,
+    [BODY_TRANSFER] = POINTS,
+    [BODY_UPDATE] = POINTS,
+    [BODY_VELOCITY] = POINTS | ELEMENTS | RIGID,
+    [BODY_GRAVITY] = POINTS | ELEMENTS | RIGID,
+    [BODY_MESH] = ELEMENTS | RIGID,
+    [BODY_FIX] = ELEMENTS,
+    [BODY_MOTION] = RIGID,
+};
+
+/* Keys of other methods are refused; where --set has chosen the method, those of the file are left out with a warning. */
+static void sort_keys(ab_scene_reader *r, const ab_node **v, const char *where, unsigned method, const char *name) {
+    for (int k = 0; k < BODY_KEYS; k++) {
+        if (v[k] == NULL || (belongs[k] & method)) continue;
+        char whose[80] = "";
+        for (int m = 0; m < METHODS; m++)
+            if (belongs[k] & methods[m].bit)
+                snprintf(whose + strlen(whose), sizeof whose - strlen(whose), "%s%s", whose[0] == '\0' ? "" : " and ", methods[m].name);
+        if (v[BODY_METHOD]->override_ && !v[k]->override_)
+            ab_report_warning(r->base.report, v[k]->mark, "%s.%s belongs to method %s, not to %s, which --set chose; it is left out", where,
+                              ab_section_body.keys[k].name, whose, name);
+        else
+            ab_report_error(r->base.report, v[k]->mark, "%s.%s belongs to method %s; leave it out of a body of method %s", where,
+                            ab_section_body.keys[k].name, whose, name);
+        v[k] = NULL;
     }
-    if (!inside)
-        ab_report_error(r->base.report, body->shape.mark,
-                        "body '%s' lies %s outside the grid: it reaches from [%.10g, %.10g] to [%.10g, %.10g] m, the grid from [%.10g, "
-                        "%.10g] to [%.10g, %.10g] m; make the grid larger or move the body",
-                        body->name, apart ? "wholly" : "partly", low[0], low[1], high[0], high[1], scene->grid_from[0], scene->grid_from[1],
-                        scene->grid_to[0], scene->grid_to[1]);
+}
+
+static void missing(ab_scene_reader *r, ab_mark mark, const char *where, const char *key, const char *method, const char *form) {
+    ab_report_error(r->base.report, mark, "key '%s' is missing in %s: method %s needs it, %s", key, where, method, form);
+}
+
+static void take_points(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_body_spec *body) {
+    take_fill(r, v[BODY_FILL], where, body);
+    take_basis(r, v[BODY_BASIS], where, body);
+    take_transfer(r, v[BODY_TRANSFER], where, body);
+    ab_read_word(&r->base, &ab_section_body.keys[BODY_UPDATE], v[BODY_UPDATE], where, &body->update);
+    if (body->basis != NULL && body->update != NULL && strcmp(body->basis, "linear") == 0 && strcmp(body->update, "usl") == 0)
+        ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
+                          "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",
+                          where);
+}
+
+/* Where the body is at the start: by method a shape, a mesh, or one of them. */
+static void take_outline(ab_scene_reader *r, const ab_node *const *v, const char *where, unsigned method, ab_mark mark,
+                         ab_body_spec *body) {
+    char path[AB_WHERE];
+    if (method == RIGID && (v[BODY_SHAPE] != NULL) == (v[BODY_MESH] != NULL)) {
+        ab_report_error(r->base.report, v[BODY_SHAPE] != NULL ? v[BODY_MESH]->mark : mark, "%s needs one of shape and mesh%s", where,
+                        v[BODY_SHAPE] != NULL ? ", not both" : ": {box: [[x, y], [x, y]]}, say");
+        return;
+    }
+    if (method == POINTS && v[BODY_SHAPE] == NULL) missing(r, mark, where, "shape", body->method, "{box: [[x, y], [x, y]]}, say");
+    if (method == ELEMENTS && v[BODY_MESH] == NULL)
+        missing(r, mark, where, "mesh", body->method, "{box: [[x, y], [x, y]], elements: [nx, ny]}, say");
+    if (v[BODY_SHAPE] != NULL) body->has_shape = ab_scene_take_shape(r, v[BODY_SHAPE], ab_where_join(path, where, "shape"), &body->shape);
+    if (v[BODY_MESH] != NULL) ab_scene_take_mesh(r, v[BODY_MESH], ab_where_join(path, where, "mesh"), &body->mesh);
 }
 
 static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *body) {
@@ -91,20 +141,23 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
     ab_name_ok(&r->base, "body", entry->key, entry->mark);
     if (!ab_section_open(&r->base, &ab_section_body, entry->value, where, v)) return;
     const ab_key *key = ab_section_body.keys;
-    if (v[BODY_METHOD] != NULL) ab_read_word(&r->base, &key[BODY_METHOD], v[BODY_METHOD], where, &body->method);
-    if (v[BODY_MATERIAL] != NULL) take_material(r, v[BODY_MATERIAL], where, body);
-    take_fill(r, v[BODY_FILL], where, body);
-    take_basis(r, v[BODY_BASIS], where, body);
-    take_transfer(r, v[BODY_TRANSFER], where, body);
-    ab_read_word(&r->base, &key[BODY_UPDATE], v[BODY_UPDATE], where, &body->update);
+    unsigned method = 0;
+    if (v[BODY_METHOD] != NULL && ab_read_word(&r->base, &key[BODY_METHOD], v[BODY_METHOD], where, &body->method))
+        for (int m = 0; m < METHODS; m++)
+            if (strcmp(body->method, methods[m].name) == 0) method = methods[m].bit;
+    if (method != 0) sort_keys(r, v, where, method, body->method);
+    const ab_mark mark = entry->value->mark;
+    if (v[BODY_MATERIAL] != NULL)
+        take_material(r, v[BODY_MATERIAL], where, body);
+    else if (method != 0 && method != RIGID)
+        missing(r, mark, where, "material", body->method, "the name of one of the materials");
     ab_read_vector(&r->base, &key[BODY_VELOCITY], v[BODY_VELOCITY], where, body->velocity);
     ab_read_flag(&r->base, &key[BODY_GRAVITY], v[BODY_GRAVITY], where, &body->gravity);
-    if (v[BODY_SHAPE] != NULL && ab_scene_take_shape(r, v[BODY_SHAPE], ab_where_join(path, where, "shape"), &body->shape))
-        check_inside(r, body);
-    if (body->basis != NULL && body->update != NULL && strcmp(body->basis, "linear") == 0 && strcmp(body->update, "usl") == 0)
-        ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
-                          "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",
-                          where);
+    if (method != 0) take_outline(r, v, where, method, mark, body);
+    if (method == POINTS) take_points(r, v, where, body);
+    if (v[BODY_FIX] != NULL) ab_scene_take_fix(r, v[BODY_FIX], ab_where_join(path, where, "fix"), body);
+    if (v[BODY_MOTION] != NULL) ab_scene_take_motion(r, v[BODY_MOTION], ab_where_join(path, where, "motion"), body);
+    if (method == RIGID && v[BODY_MATERIAL] == NULL) ab_scene_check_mass(r, body, where);
 }
 
 void ab_scene_take_bodies(ab_scene_reader *r, const ab_node *node) {

@@ -108,13 +108,13 @@ static void take_pair(ab_scene_reader *r, pairs *all, const ab_node *node, const
 /* Bodies that lie together without an entry are more often forgotten than meant. */
 static void warn_strangers(ab_scene_reader *r, pairs *all) {
     const ab_scene *scene = r->scene;
-    const double slack = 1e-6 * scene->grid_cell;
     size_t said = 0;
     for (size_t a = 0; a < scene->body_count; a++) {
         double low[2], high[2], other_low[2], other_high[2];
-        if (!ab_shape_bounds(&scene->bodies[a].shape, low, high)) continue;
+        if (!ab_body_bounds(&scene->bodies[a], low, high)) continue;
+        const double slack = 1e-6 * (scene->grid_cell > 0 ? scene->grid_cell : fmin(high[0] - low[0], high[1] - low[1]));
         for (size_t b = a + 1; b < scene->body_count && said < MOST_WARNINGS; b++) {
-            if (*pair(all, a, b) != 0 || !ab_shape_bounds(&scene->bodies[b].shape, other_low, other_high)) continue;
+            if (*pair(all, a, b) != 0 || !ab_body_bounds(&scene->bodies[b], other_low, other_high)) continue;
             bool apart = false;
             for (int d = 0; d < 2; d++) apart = apart || low[d] > other_high[d] + slack || other_low[d] > high[d] + slack;
             if (apart) continue;
@@ -153,23 +153,58 @@ void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
     if (bodies > 1) warn_strangers(r, &all);
 }
 
+/* Points carry no forces of their own, rigid bodies no tractions. */
+static void check_load_method(ab_scene_reader *r, const ab_node *const *v, const char *where, const ab_load_spec *load) {
+    const ab_body_spec *body = &r->scene->bodies[load->body];
+    if (body->method == NULL) return;
+    const ab_node *node = v[LOAD_FORCE] != NULL ? v[LOAD_FORCE] : v[LOAD_AT];
+    if (load->point && strcmp(body->method, "material-points") == 0)
+        ab_report_error(r->base.report, node->mark,
+                        "%s: a force at one place of material points makes a hole there, not a load; spread it over part of the outline of "
+                        "'%s': where: {side: top, x: [a, b]}, traction: [.., ..] (force by length)",
+                        where, body->name);
+    node = v[LOAD_TRACTION] != NULL ? v[LOAD_TRACTION] : v[LOAD_WHERE];
+    if (!load->point && strcmp(body->method, "rigid") == 0)
+        ab_report_error(
+            r->base.report, node->mark,
+            "%s: '%s' is rigid, so only the sum of a traction would count; write that sum: at: [x, y] (its middle), force: [.., ..]", where,
+            body->name);
+}
+
 static void take_load(ab_scene_reader *r, const ab_node *node, const char *where, ab_load_spec *load) {
     const ab_node *v[LOAD_KEYS];
     char path[AB_WHERE];
+    bool known = false;
     load->mark = node->mark;
     if (!ab_section_open(&r->base, &ab_section_load, node, where, v)) return;
     if (v[LOAD_BODY] != NULL) {
         const char *name = ab_scene_word(r, v[LOAD_BODY], ab_where_join(path, where, "body"), "the name of a body");
         const int body = name == NULL ? -1 : ab_scene_body_named(r, name, v[LOAD_BODY]->mark, path);
-        if (body >= 0) load->body = (size_t)body;
+        known = body >= 0;
+        if (known) load->body = (size_t)body;
     }
     if (v[LOAD_WHERE] != NULL) ab_scene_take_where(r, v[LOAD_WHERE], ab_where_join(path, where, "where"), &load->where);
-    if (v[LOAD_TRACTION] != NULL) ab_read_vector(&r->base, &ab_section_load.keys[LOAD_TRACTION], v[LOAD_TRACTION], where, load->traction);
+    const ab_key *key = ab_section_load.keys;
+    ab_read_vector(&r->base, &key[LOAD_TRACTION], v[LOAD_TRACTION], where, load->traction);
+    ab_read_point(&r->base, &key[LOAD_AT], v[LOAD_AT], where, load->at);
+    ab_read_vector(&r->base, &key[LOAD_FORCE], v[LOAD_FORCE], where, load->force);
+    const bool spread = v[LOAD_WHERE] != NULL || v[LOAD_TRACTION] != NULL;
+    load->point = v[LOAD_AT] != NULL || v[LOAD_FORCE] != NULL;
+    if (spread == load->point) {
+        ab_report_error(r->base.report, node->mark, "%s needs where and traction, or at and force%s", where, spread ? ", not of both" : "");
+        return;
+    }
+    for (int k = LOAD_WHERE; k <= LOAD_FORCE; k++)
+        if (v[k] == NULL && (k >= LOAD_AT) == load->point)
+            ab_report_error(r->base.report, node->mark, "key '%s' is missing in %s: %s", key[k].name, where, key[k].help);
+    if (known) check_load_method(r, v, where, load);
 }
 
 void ab_scene_take_loads(ab_scene_reader *r, const ab_node *node) {
     ab_scene *scene = r->scene;
-    if (node == NULL || !ab_scene_is_list(r, node, "loads", "entries - {body: ..., where: ..., traction: ...}")) return;
+    if (node == NULL ||
+        !ab_scene_is_list(r, node, "loads", "entries - {body: ..., where: ..., traction: ...} or {body: ..., at: ..., force: ...}"))
+        return;
     if (node->count > MOST_ENTRIES) {
         ab_report_error(r->base.report, node->mark, "loads has %zu entries, more than %d", node->count, MOST_ENTRIES);
         return;

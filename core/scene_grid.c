@@ -71,3 +71,61 @@ void ab_scene_take_grid(ab_scene_reader *r, const ab_node *node) {
     if (from && to && cell)
         for (int d = 0; d < 2; d++) count_cells(r, d, v[GRID_TO]->mark);
 }
+
+bool ab_contact_needs_grid(const ab_contact_spec *contact) {
+    return contact->finder != NULL && (contact->finder->class_.needs & AB_NEED_SHARED_NODES) != 0;
+}
+
+static bool is_points(const ab_body_spec *body) { return body->method != NULL && strcmp(body->method, "material-points") == 0; }
+
+/* Why a body needs the grid: its method or a contact; false: it does not. */
+static bool why_grid(const ab_scene *scene, size_t body, char *why, size_t size) {
+    if (is_points(&scene->bodies[body])) {
+        snprintf(why, size, "body '%.64s' is of material points", scene->bodies[body].name);
+        return true;
+    }
+    for (size_t c = 0; c < scene->contact_count; c++) {
+        const ab_contact_spec *contact = &scene->contacts[c];
+        if ((contact->body[0] != body && contact->body[1] != body) || !ab_contact_needs_grid(contact)) continue;
+        snprintf(why, size, "contact of '%.64s' and '%.64s' by %.64s looks at the nodes of the grid", scene->bodies[contact->body[0]].name,
+                 scene->bodies[contact->body[1]].name, contact->finder->class_.name);
+        return true;
+    }
+    return false;
+}
+
+/* The whole outline must lie in the grid. */
+static void check_inside(ab_scene_reader *r, const ab_body_spec *body, const char *why) {
+    const ab_scene *scene = r->scene;
+    double low[2], high[2];
+    if (scene->grid_cells[0] == 0 || scene->grid_cells[1] == 0 || !ab_body_bounds(body, low, high)) return;
+    const double slack = 1e-9 * scene->grid_cell;
+    bool inside = true, apart = false;
+    for (int d = 0; d < 2; d++) {
+        const double from = scene->grid_from[d] - slack - 1e-12 * fabs(scene->grid_from[d]),
+                     to = scene->grid_to[d] + slack + 1e-12 * fabs(scene->grid_to[d]);
+        inside = inside && low[d] >= from && high[d] <= to;
+        apart = apart || high[d] <= from || low[d] >= to;
+    }
+    if (!inside)
+        ab_report_error(r->base.report, body->mesh.kind != AB_MESH_NONE ? body->mesh.mark : body->shape.mark,
+                        "body '%s' lies %s outside the grid: it reaches from [%.10g, %.10g] to [%.10g, %.10g] m, the grid from [%.10g, "
+                        "%.10g] to [%.10g, %.10g] m%s%s; make the grid larger or move the body",
+                        body->name, apart ? "wholly" : "partly", low[0], low[1], high[0], high[1], scene->grid_from[0], scene->grid_from[1],
+                        scene->grid_to[0], scene->grid_to[1], is_points(body) ? "" : ", and ", is_points(body) ? "" : why);
+}
+
+void ab_scene_check_grid(ab_scene_reader *r, const ab_node *root) {
+    const ab_scene *scene = r->scene;
+    const bool written = ab_node_find(root, "grid") != NULL;
+    char why[300];
+    for (size_t b = 0; b < scene->body_count; b++) {
+        if (!why_grid(scene, b, why, sizeof why)) continue;
+        if (!written) {
+            ab_report_error(r->base.report, root->mark,
+                            "key 'grid' is missing in the scene: %s; write grid: {from: [x, y], to: [x, y], cell: h}", why);
+            return;
+        }
+        check_inside(r, &scene->bodies[b], why);
+    }
+}

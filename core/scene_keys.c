@@ -22,11 +22,12 @@ static const ab_key top[] = {
                      .help = "acceleration of gravity"},
     [TOP_DAMPING] = {"damping", AB_KEY_SECTION, .help = "local non-viscous damping"},
     [TOP_TIME] = {"time", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "how long, and in which steps"},
-    [TOP_GRID] = {"grid", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "the background grid"},
-    [TOP_MATERIALS] = {"materials", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "materials by name"},
+    [TOP_GRID] = {"grid", AB_KEY_SECTION,
+                  .help = "the background grid; needed by material points, and by contact algorithms that look at its nodes"},
+    [TOP_MATERIALS] = {"materials", AB_KEY_SECTION, .help = "materials by name; all bodies but rigid ones need one"},
     [TOP_BODIES] = {"bodies", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "bodies by name"},
     [TOP_CONTACT] = {"contact", AB_KEY_SECTION, .help = "list of pairs of bodies that meet"},
-    [TOP_LOADS] = {"loads", AB_KEY_SECTION, .help = "list of tractions on outlines"},
+    [TOP_LOADS] = {"loads", AB_KEY_SECTION, .help = "list of tractions on outlines and forces at places"},
     [TOP_MONITORS] = {"monitors", AB_KEY_SECTION, .help = "list of single numbers followed in time"},
     [TOP_HISTORY] = {"history", AB_KEY_SECTION, .help = "rows of history.csv"},
     [TOP_OUTPUT] = {"output", AB_KEY_SECTION, .help = "frames of results.h5"},
@@ -66,7 +67,9 @@ static const ab_key grid[] = {
     [GRID_SIDES] = {"sides", AB_KEY_SECTION, .help = "what happens at the four sides"},
 };
 SECTION(grid, "grid", grid, NULL,
-        "Empty grid costs nothing. The extent must be a whole number of cells; where the side at `to` is free or outflow it is extended to "
+        "Needed by bodies of material points and by contact algorithms that look at grid nodes; finite elements and rigid bodies do "
+        "without. Empty "
+        "grid costs nothing. The extent must be a whole number of cells; where the side at `to` is free or outflow it is extended to "
         "the next one.",
         "grid:\n  from: [0, 0]\n  to: [8, 4]\n  cell: 0.25\n  sides: {bottom: fixed, left: roller, right: outflow}\n");
 
@@ -79,7 +82,7 @@ static const ab_key sides[] = {
 };
 SECTION(sides, "grid.sides", sides, NULL,
         "`fixed` holds both directions, `roller` the one across the side. A point that leaves through a `free` side stops the run; "
-        "`outflow` counts it out.",
+        "`outflow` counts it out. Sides act on material points; other bodies are held by `fix` and `motion`.",
         "sides: {left: roller, right: roller, bottom: fixed, top: free}\n");
 
 static const ab_key material[] = {
@@ -90,10 +93,10 @@ SECTION(material, "materials.NAME", material, "every setting that the model decl
         "materials:\n  soil: {model: linear-elastic, E: \"20 MPa\", nu: 0.3, density: 1800}\n");
 
 static const ab_key body[] = {
-    [BODY_METHOD] = {"method", AB_KEY_WORD, .flags = AB_KEY_REQUIRED, .words = "material-points|!finite-elements",
+    [BODY_METHOD] = {"method", AB_KEY_WORD, .flags = AB_KEY_REQUIRED, .words = "material-points|finite-elements|rigid",
                      .help = "how the body is computed"},
-    [BODY_MATERIAL] = {"material", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of one of the materials"},
-    [BODY_SHAPE] = {"shape", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "outline at the start"},
+    [BODY_MATERIAL] = {"material", AB_KEY_NAME, .help = "name of one of the materials; required but for rigid bodies, whose mass it gives"},
+    [BODY_SHAPE] = {"shape", AB_KEY_SECTION, .help = "outline at the start; material-points, rigid"},
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
     [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|!bspline2|!bspline3", .initial = "gimp",
                     .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
@@ -104,12 +107,83 @@ static const ab_key body[] = {
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
-    [BODY_MESH] = {"mesh", AB_KEY_LATER, .help = "finite-element bodies come later; use method: material-points with a shape"},
-    [BODY_FIX] = {"fix", AB_KEY_LATER, .help = "finite-element bodies come later; use the sides of the grid"},
+    [BODY_MESH] = {"mesh", AB_KEY_SECTION, .help = "elements at the start; finite-elements, and rigid in place of a shape"},
+    [BODY_FIX] = {"fix", AB_KEY_SECTION, .help = "list of parts whose velocity is given; finite-elements"},
+    [BODY_MOTION] = {"motion", AB_KEY_SECTION, .help = "what of its motion is given; rigid. Without it the body is free"},
 };
-SECTION(body, "bodies.NAME", body, NULL, "One entry a body. Each body has its own velocity field; bodies meet only through `contact`.",
-        "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
-        "0]\n");
+SECTION(
+    body, "bodies.NAME", body, NULL,
+    "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer` and "
+    "`update` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and `motion` to rigid; the others "
+    "to all.",
+    "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
+    "0]\n");
+
+static const ab_key mesh[] = {
+    [MESH_BOX] = {"box", AB_KEY_SECTION, .unit = "m", .help = "[[x, y], [x, y]]: lower left and upper right corner"},
+    [MESH_PATCH] = {"patch", AB_KEY_SECTION, .help = "or a patch between four edges"},
+    [MESH_FILE] = {"file", AB_KEY_TEXT, .help = "or a Gmsh file, from the scene's folder; needs a program built with libgmsh"},
+    [MESH_ELEMENTS] = {"elements", AB_KEY_POINT, .unit = "1",
+                       .help = "[nx, ny]: elements along x (bottom) and along y (left); required with box and patch"},
+    [MESH_GRADING] = {"grading", AB_KEY_POINT, .unit = "1", .initial = "[1, 1]",
+                      .help =
+                          "size of the last element over that of the first, along x and along y, in equal steps of ratio; box and patch"},
+    [MESH_TYPE] = {"type", AB_KEY_WORD, .words = "q4|q4r|q6|q8|q8r", .initial = "q8",
+                   .help =
+                       "q4: 4 nodes, 2x2 Gauss points; q4r: 1 Gauss point, stabilised; q6: q4 with incompatible modes (bends well); q8: 8 "
+                       "nodes, 3x3, the default because it bends without locking and has no motion that costs no energy; q8r: 2x2, "
+                       "faster, and it does not lock where volume is kept (plastic flow)"},
+    [MESH_F_BAR] = {"f_bar", AB_KEY_FLAG, .initial = "false",
+                    .help = "true: the change of volume is averaged over the element, against locking where volume is kept; type q4"},
+    [MESH_HOURGLASS] = {"hourglass", AB_KEY_NUMBER, .unit = "1", .initial = "1", POSITIVE,
+                        .help = "part of the stabilisation that the exact stiffness in bending asks for; type q4r"},
+};
+SECTION(mesh, "bodies.NAME.mesh", mesh, NULL, "One of `box`, `patch` and `file`.",
+        "mesh: {box: [[0, 0], [3.75, 0.5]], elements: [15, 2], type: q8}\n");
+
+static const ab_key patch[] = {
+    [PATCH_BOTTOM] = {"bottom", AB_KEY_SECTION, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "from left to right"},
+    [PATCH_RIGHT] = {"right", AB_KEY_SECTION, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "from the end of bottom upwards"},
+    [PATCH_TOP] = {"top", AB_KEY_SECTION, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "from left to right"},
+    [PATCH_LEFT] = {"left", AB_KEY_SECTION, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "from the beginning of bottom upwards"},
+};
+SECTION(
+    patch, "bodies.NAME.mesh.patch", patch, NULL,
+    "Four edges that meet at the corners, each a list of points [[x, y], [x, y], ...] joined by straight pieces, or an arc of a circle. "
+    "Nodes lie on them by length, and inside by transfinite interpolation.",
+    "patch: # a quarter of a ring\n  bottom: [[1, 0], [2, 0]]\n  right: {arc: {from: [2, 0], to: [0, 2], center: [0, 0]}}\n  top: [[0, 1], "
+    "[0, 2]]\n  left: {arc: {from: [1, 0], to: [0, 1], center: [0, 0]}}\n");
+
+static const ab_key arc[] = {
+    [ARC_FROM] = {"from", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "where it begins"},
+    [ARC_TO] = {"to", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "where it ends"},
+    [ARC_CENTER] = {"center", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "of the circle; the same distance from both"},
+};
+SECTION(arc, "arc", arc, NULL, "The shorter way round, less than half a circle.", NULL);
+
+static const ab_key fix[] = {
+    [FIX_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "which nodes"},
+    [FIX_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
+                      .help = "their velocity; null in place of a number leaves that direction free"},
+};
+SECTION(fix, "bodies.NAME.fix[i]", fix, NULL, "A list. Nodes of a finite-element body whose velocity is given.",
+        "fix:\n  - {where: {x: 0}, velocity: [0, 0]}\n  - {where: {side: top}, velocity: [null, \"-0.1*t\"]}\n");
+
+static const ab_key motion[] = {
+    [MOTION_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_NULL, .variables = AB_VARIABLE_T,
+                         .help = "velocity of the center; null in place of a number leaves that direction free"},
+    [MOTION_SPIN] = {"spin", AB_KEY_FORMULA, .unit = "s-1", .flags = AB_KEY_NULL, .variables = AB_VARIABLE_T,
+                     .help = "rate of turning in radians per second, counter-clockwise; without it or null: free"},
+    [MOTION_CENTER] = {"center", AB_KEY_POINT, .unit = "m",
+                       .help = "the place of the body at the start that velocity is of; default: the centre of mass"},
+    [MOTION_MASS] = {"mass", AB_KEY_NUMBER, .unit = "kg", POSITIVE,
+                     .help = "mass (per m of thickness); default: area times the material's density"},
+    [MOTION_INERTIA] = {"inertia", AB_KEY_NUMBER, .unit = "kg m2", POSITIVE,
+                        .help = "moment of inertia about the centre of mass (per m of thickness); default: that of the mass spread evenly"},
+};
+SECTION(motion, "bodies.NAME.motion", motion, NULL,
+        "Of a rigid body. What is not given follows from forces, and needs a mass: from `mass` here or from the material's density.",
+        "motion: {velocity: [0, \"-0.1*min(t, 1)\"], spin: 0}\n");
 
 static const ab_key shape[] = {
     [SHAPE_BOX] = {"box", AB_KEY_SECTION, .unit = "m", .help = "[[x, y], [x, y]]: lower left and upper right corner"},
@@ -171,12 +245,18 @@ SECTION(contact, "contact[i]", contact, "every setting that the algorithm or the
 
 static const ab_key load[] = {
     [LOAD_BODY] = {"body", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a body"},
-    [LOAD_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "part of its outline at the start"},
-    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
-                       .help = "force per area; follows the points"},
+    [LOAD_WHERE] = {"where", AB_KEY_SECTION, .help = "part of its outline at the start; with traction"},
+    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .variables = AB_VARIABLE_T,
+                       .help = "force per area; follows the points; material-points, finite-elements"},
+    [LOAD_AT] = {"at", AB_KEY_POINT, .unit = "m",
+                 .help =
+                     "a place at the start, with force: of finite elements the nearest node is taken, of a rigid body the place itself"},
+    [LOAD_FORCE] = {"force", AB_KEY_VECTOR, .unit = "N", .variables = AB_VARIABLE_T,
+                    .help = "force (per m of thickness) on that place of the body; finite-elements, rigid"},
 };
-SECTION(load, "loads[i]", load, NULL, "A list of tractions.",
-        "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n");
+SECTION(load, "loads[i]", load, NULL, "A list. `where` with `traction`, or `at` with `force`.",
+        "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n  - {body: beam, at: [3.75, 0.25], force: "
+        "[0, \"-2 kN\"]}\n");
 
 static const ab_key where[] = {
     [WHERE_ALL] = {"all", AB_KEY_FLAG, .help = "true: everywhere"},
@@ -237,10 +317,16 @@ SECTION(expect, "expect[i]", expect, NULL,
         "A list. Each compares a monitor or a column with a reference; `abut run --strict` exits 3 when one misses.",
         "expect:\n  - {name: slides, monitor: block_x, reference: \"0.5*a*t^2\", norm: l2, tolerance: 0.02}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping, &ab_section_time,
-                                         &ab_section_grid,     &ab_section_sides,   &ab_section_material,
-                                         &ab_section_body,     &ab_section_shape,   &ab_section_disc,
-                                         &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_contact, &ab_section_load,
-                                         &ab_section_where,    &ab_section_monitor, &ab_section_history,
-                                         &ab_section_output,   &ab_section_expect,  NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,
+                                         &ab_section_time,     &ab_section_grid,
+                                         &ab_section_sides,    &ab_section_material,
+                                         &ab_section_body,     &ab_section_shape,
+                                         &ab_section_disc,     &ab_section_ring,
+                                         &ab_section_fill,     &ab_section_basis,
+                                         &ab_section_transfer, &ab_section_mesh,
+                                         &ab_section_patch,    &ab_section_arc,
+                                         &ab_section_fix,      &ab_section_motion,
+                                         &ab_section_contact,  &ab_section_load,
+                                         &ab_section_where,    &ab_section_monitor,
+                                         &ab_section_history,  &ab_section_output,
+                                         &ab_section_expect,   NULL};

@@ -44,15 +44,21 @@ enum {
     BODY_GRAVITY,
     BODY_MESH,
     BODY_FIX,
+    BODY_MOTION,
     BODY_KEYS
 };
+enum { MESH_BOX, MESH_PATCH, MESH_FILE, MESH_ELEMENTS, MESH_GRADING, MESH_TYPE, MESH_F_BAR, MESH_HOURGLASS, MESH_KEYS };
+enum { PATCH_BOTTOM, PATCH_RIGHT, PATCH_TOP, PATCH_LEFT, PATCH_KEYS };
+enum { ARC_FROM, ARC_TO, ARC_CENTER, ARC_KEYS };
+enum { FIX_WHERE, FIX_VELOCITY, FIX_KEYS };
+enum { MOTION_VELOCITY, MOTION_SPIN, MOTION_CENTER, MOTION_MASS, MOTION_INERTIA, MOTION_KEYS };
 enum { SHAPE_BOX, SHAPE_DISC, SHAPE_RING, SHAPE_POLYGON, SHAPE_UNION, SHAPE_MESH, SHAPE_KEYS };
 enum { ROUND_CENTER, ROUND_RADIUS, ROUND_INNER, ROUND_KEYS };
 enum { FILL_RULE, FILL_PER_CELL, FILL_POINTS, FILL_SEED, FILL_KEYS };
 enum { BASIS_GIMP, BASIS_KEYS };
 enum { TRANSFER_FLIP, TRANSFER_XPIC, TRANSFER_KEYS };
 enum { CONTACT_BODIES, CONTACT_ALGORITHM, CONTACT_RESPONSE, CONTACT_KEYS };
-enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_KEYS };
+enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_AT, LOAD_FORCE, LOAD_KEYS };
 enum { WHERE_ALL, WHERE_SIDE, WHERE_X, WHERE_Y, WHERE_KEYS };
 enum { MONITOR_NAME, MONITOR_BODY, MONITOR_CONTACT, MONITOR_VALUE, MONITOR_AT, MONITOR_OVER, MONITOR_WHERE, MONITOR_KEYS };
 enum { HISTORY_EVERY, HISTORY_KEYS };
@@ -73,7 +79,8 @@ enum {
 
 extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material,
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
-    ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect;
+    ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
+    ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

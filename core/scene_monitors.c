@@ -133,14 +133,14 @@ static void take_places(ab_scene_reader *r, const ab_node *const *v, const char 
         monitor->has_at = ab_read_point(&r->base, &ab_section_monitor.keys[MONITOR_AT], v[MONITOR_AT], where, monitor->at);
         double low[2], high[2];
         const ab_body_spec *body = &scene->bodies[monitor->body];
-        if (monitor->has_at && ab_shape_bounds(&body->shape, low, high))
-            for (int d = 0; d < 2; d++)
-                if (monitor->at[d] < low[d] - scene->grid_cell || monitor->at[d] > high[d] + scene->grid_cell) {
-                    ab_report_warning(r->base.report, v[MONITOR_AT]->mark,
-                                      "%s: [%g, %g] lies outside body '%s'; its nearest point is taken", ab_where_join(path, where, "at"),
-                                      monitor->at[0], monitor->at[1], body->name);
-                    break;
-                }
+        if (!monitor->has_at || !ab_body_bounds(body, low, high)) return;
+        const double slack = scene->grid_cell > 0 ? scene->grid_cell : 0.05 * fmax(high[0] - low[0], high[1] - low[1]);
+        for (int d = 0; d < 2; d++)
+            if (monitor->at[d] < low[d] - slack || monitor->at[d] > high[d] + slack) {
+                ab_report_warning(r->base.report, v[MONITOR_AT]->mark, "%s: [%g, %g] lies outside body '%s'; its nearest point is taken",
+                                  ab_where_join(path, where, "at"), monitor->at[0], monitor->at[1], body->name);
+                break;
+            }
         return;
     }
     if (v[MONITOR_WHERE] != NULL)

@@ -35,8 +35,19 @@ void ab_scene_take_expects(ab_scene_reader *reader, const ab_node *node);
 
 bool ab_scene_take_shape(ab_scene_reader *reader, const ab_node *node, const char *where, ab_shape_spec *shape);
 bool ab_scene_take_where(ab_scene_reader *reader, const ab_node *node, const char *where, ab_where *set);
+bool ab_scene_take_mesh(ab_scene_reader *reader, const ab_node *node, const char *where, ab_mesh_spec *mesh);
+void ab_scene_take_fix(ab_scene_reader *reader, const ab_node *node, const char *where, ab_body_spec *body);
+void ab_scene_take_motion(ab_scene_reader *reader, const ab_node *node, const char *where, ab_body_spec *body);
+void ab_scene_check_mass(ab_scene_reader *reader, const ab_body_spec *body, const char *where);
 /* Bounds of a shape; false when it could not be read. */
 bool ab_shape_bounds(const ab_shape_spec *shape, double low[2], double high[2]);
+/* Bounds of a body, from its shape or mesh; false where they are not known: a mistake, or a mesh in a file. */
+bool ab_body_bounds(const ab_body_spec *body, double low[2], double high[2]);
+
+/* After bodies and contacts: is there a grid where one is needed, and are the bodies that need it inside? `root`: of the scene. */
+void ab_scene_check_grid(ab_scene_reader *reader, const ab_node *root);
+/* True when a pair's finder looks at the nodes of the grid. */
+bool ab_contact_needs_grid(const ab_contact_spec *contact);
 
 /* Index of a body or material by name, or -1 with the mistake reported. `where` is the place of the name. */
 int ab_scene_body_named(ab_scene_reader *reader, const char *name, ab_mark mark, const char *where);

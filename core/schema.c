@@ -77,6 +77,7 @@ bool ab_section_open(ab_reader *reader, const ab_section *section, const ab_node
             ab_report_error(reader->report, value->mark, "%s is not in this version yet: %s", ab_where_join(path, where, key->name),
                             key->help);
         } else if (ab_node_is_null(value)) {
+            if (key->flags & AB_KEY_NULL) continue;
             ab_report_error(reader->report, value->mark, "%s has no value: %s", ab_where_join(path, where, key->name), key->help);
         } else {
             values[k] = value;

@@ -20,7 +20,13 @@ typedef enum ab_key_type {
     AB_KEY_LATER    /* known, but not in this version: refused by name */
 } ab_key_type;
 
-enum ab_key_flags { AB_KEY_REQUIRED = 1, AB_KEY_MIN_OPEN = 2, AB_KEY_MAX_OPEN = 4, AB_KEY_RANGE = 8 };
+enum ab_key_flags {
+    AB_KEY_REQUIRED = 1,
+    AB_KEY_MIN_OPEN = 2,
+    AB_KEY_MAX_OPEN = 4,
+    AB_KEY_RANGE = 8,
+    AB_KEY_NULL = 16 /* null has a meaning: as if not written */
+};
 
 typedef struct ab_key {
     const char *name;
