@@ -3,6 +3,7 @@
 #ifndef AB_MPM_BATCH_H
 #define AB_MPM_BATCH_H
 
+#include "core/strain.h"
 #include "mpm/body.h"
 
 enum { LONG = 64 }; /* points in a batch: rows of a batch have this length */
@@ -46,44 +47,31 @@ static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, c
     for (int l = 0; l < LONG; ++l) batch->flag[l] = 0;
 }
 
-/* Block b of the batch: strain increment and turned stress. The increment is that of Hughes and Winget (1980): G = H (I + H/2)^-1, so that a finite rotation
- * gives no strain; in two dimensions the rotation is one angle. Deformation gradients of the points move on to the end of the step. */
+/* Block b of the batch: strain increment and turned stress. Deformation gradients of the points move on to the end of the step. */
 static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batch *batch, mpm_rows rows, double *block,
                                                                    const double h[4][LONG], uint32_t b) {
     const size_t at = 8 * (size_t)b;
-    const v8 one = v8_set(1.0), half = v8_set(0.5);
+    const v8 one = v8_set(1.0);
     const v8 hxx = v8_load(h[0] + at), hxy = v8_load(h[1] + at), hyx = v8_load(h[2] + at), hyy = v8_load(h[3] + at);
-    const v8 cross = hxx * hyy - hxy * hyx, trace = hxx + hyy;
-    const v8 middle = one + half * trace + v8_set(0.25) * cross; /* det(I + H/2) */
-    const v8 twist = half * (hyx - hxy), quarter = v8_set(0.25) * twist * twist, square = middle * middle;
-    const v8 both = one / (middle * (square + quarter)); /* one division for 1/middle and 1/(middle^2 + twist^2/4) */
-    const v8 inverse = both * (square + quarter), scale = both * middle;
-    const v8 cosine = (square - quarter) * scale,
-             sine = twist * middle * scale; /* of the angle whose half has the tangent twist/(2 middle) */
-    v8_store(batch->strain[0] + at, (hxx + half * cross) * inverse);
-    v8_store(batch->strain[1] + at, (hyy + half * cross) * inverse);
-    v8_store(batch->strain[3] + at, (hxy + hyx) * inverse);
-    v8_store(batch->jacobian + at, one + trace + cross); /* det(I + H) */
-    const v8 cc = cosine * cosine, ss = sine * sine, cs = cosine * sine;
-    const v8 sxx = v8_load(block + 8 * ROW_STRESS), syy = v8_load(block + 8 * (ROW_STRESS + 1)),
-             sxy = v8_load(block + 8 * (ROW_STRESS + 3));
-    v8_store(batch->turned[0] + at, cc * sxx + ss * syy - (cs + cs) * sxy);
-    v8_store(batch->turned[1] + at, ss * sxx + cc * syy + (cs + cs) * sxy);
+    const ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
+    v8_store(batch->strain[0] + at, increment.xx);
+    v8_store(batch->strain[1] + at, increment.yy);
+    v8_store(batch->strain[3] + at, increment.xy);
+    v8_store(batch->jacobian + at, increment.jacobian);
+    v8 sxx = v8_load(block + 8 * ROW_STRESS), syy = v8_load(block + 8 * (ROW_STRESS + 1)), sxy = v8_load(block + 8 * (ROW_STRESS + 3));
+    ab_turn_stress(increment.cosine, increment.sine, &sxx, &syy, &sxy);
+    v8_store(batch->turned[0] + at, sxx);
+    v8_store(batch->turned[1] + at, syy);
     v8_store(batch->turned[2] + at, v8_load(block + 8 * (ROW_STRESS + 2)));
-    v8_store(batch->turned[3] + at, cs * (sxx - syy) + (cc - ss) * sxy);
+    v8_store(batch->turned[3] + at, sxy);
     if (batch->view.density) {
-        const v8 volume = v8_load(block + 8 * ROW_VOLUME) * (one + trace + cross);
+        const v8 volume = v8_load(block + 8 * ROW_VOLUME) * increment.jacobian;
         v8_store(batch->density + at, v8_load(block + 8 * ROW_MASS) / v8_less(v8_set(0.0), volume, volume, one));
     }
     if (rows.gradient >= 0) {
-        double *f = block + 8 * rows.gradient;
-        const v8 fxx = v8_load(f), fxy = v8_load(f + 8), fyx = v8_load(f + 16), fyy = v8_load(f + 24);
-        const v8 new_f[4] = {fxx + hxx * fxx + hxy * fyx, fxy + hxx * fxy + hxy * fyy, fyx + hyx * fxx + hyy * fyx,
-                             fyy + hyx * fxy + hyy * fyy};
-        for (int c = 0; c < 4; ++c) {
-            v8_store(f + 8 * c, new_f[c]);
-            v8_store(batch->gradient[c] + at, new_f[c]);
-        }
+        v8 moved[4];
+        ab_move_gradient(hxx, hxy, hyx, hyy, block + 8 * rows.gradient, moved);
+        for (int c = 0; c < 4; ++c) v8_store(batch->gradient[c] + at, moved[c]);
         v8_store(batch->gradient[4] + at, one);
     }
     if (batch->view.velocity_gradient) {
@@ -94,7 +82,7 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
         double turned[AB_MATERIAL_STATES][8] __attribute__((aligned(64)));
         const double *state = block + 8 * rows.state;
         if (batch->turns) { /* vectors and tensors turn with the material before it sees them */
-            ab_state_turn(batch->class_, state, cosine, sine, turned[0]);
+            ab_state_turn(batch->class_, state, increment.cosine, increment.sine, turned[0]);
             state = turned[0];
         }
         for (int s = 0; s < rows.states; ++s) v8_store(batch->state0[s] + at, v8_load(state + 8 * s));
