@@ -54,6 +54,9 @@ typedef struct ab_dofs {
     const double *spin_old; /* at the start of the step */
     double inverse_inertia; /* 1/(kg m2); 0 where the spin is held */
     double centre[2];       /* m from the grid's corner */
+    /* N s: NULL, or where the loop adds up what it gives each dof in this solve, held directions included (impulse[k*2 + c]; of a body that turns as a whole
+     * impulse[2] is the moment about centre): supports that move do work against it, and reactions hold it. */
+    double *impulse;
 } ab_dofs;
 
 /* Cells in which the faces of one body may be touched: tiles (as of the background grid, ascending) with a bit per cell, bit (j%AB_TILE)*AB_TILE + i%AB_TILE
