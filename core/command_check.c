@@ -31,6 +31,11 @@ int ab_command_check(const ab_command_line *line) {
             .threads = 1, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
         ab_schedule *schedule = NULL;
         status = ab_schedule_create(scene, &options, &schedule, report);
+        if (status == AB_OK) { /* and only they know which values and fields they have */
+            ab_state_view view;
+            ab_schedule_view(schedule, &view);
+            status = ab_results_check(scene, &view, report);
+        }
         ab_schedule_destroy(schedule);
         const size_t warnings = ab_report_warnings(report);
         ab_report_print(report, stderr);

@@ -85,6 +85,34 @@ static double contact_value(const monitor *m, const ab_state_view *view) {
     return (double)value;
 }
 
+/* Sum of the contact forces on a body, or (component 2) of their moments about its centre of mass: where that was when they acted, a step ago. */
+static double force_value(const monitor *m, const ab_state_view *view) {
+    const size_t body = (size_t)m->spec->body;
+    double force[3] = {0};
+    for (size_t k = 0; k < view->scene->contact_count; k++) {
+        const ab_contact_totals *totals = &view->contacts[k];
+        for (int side = 0; side < 2; side++) {
+            if (view->scene->contacts[k].body[side] != body) continue;
+            const double sign = side == 0 ? -1 : 1; /* totals are those on the second body */
+            force[0] += sign * totals->force[0];
+            force[1] += sign * totals->force[1];
+            force[2] += sign * totals->moment;
+        }
+    }
+    if (m->component < 2) return force[m->component];
+    const ab_motion *motion = &view->motion[body];
+    double centre[2];
+    for (int c = 0; c < 2; c++) centre[c] = motion->centre[c] - (motion->mass > 0 ? view->dt * motion->momentum[c] / motion->mass : 0);
+    return force[2] - (centre[0] * force[1] - centre[1] * force[0]);
+}
+
+static double reaction_value(const monitor *m, const ab_state_view *view) {
+    const ab_domain *domain = view->domains[m->spec->body];
+    double force[3] = {0};
+    domain->ops->reaction(domain, force);
+    return force[m->component];
+}
+
 static double point_value(const monitor *m, const body_points *points, const double *row, size_t start, int dimension) {
     switch (m->quantity) {
     case THE_LENGTH: return dimension == 3 ? sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) : hypot(row[0], row[1]);
@@ -167,6 +195,8 @@ ab_status ab_monitor_value(ab_monitors *monitors, size_t index, const ab_state_v
         case OF_MOTION: m->value = motion_value(monitors, m, view); break;
         case OF_ENERGY: m->value = energy_value(m, view); break;
         case OF_CONTACT: m->value = contact_value(m, view); break;
+        case OF_ALL_CONTACTS: m->value = force_value(m, view); break;
+        case OF_REACTION: m->value = reaction_value(m, view); break;
         case OF_DT: m->value = view->dt; break;
         case OF_ROTATION: AB_TRY(rotation_value(monitors, m, view, report)); break;
         case OF_POINTS: AB_TRY(points_value(monitors, m, view, report)); break;

@@ -142,6 +142,30 @@ static bool find_points(monitor *m, const ab_domain *domain, const char *base, c
     return true;
 }
 
+/* force.x, force.y and moment of all contacts of a body; reaction.x, reaction.y, reaction.moment. */
+static bool find_force(monitor *m, const ab_domain *domain, const char *base, const char *component, int axis) {
+    const bool contact = strcmp(base, "force") == 0 || strcmp(m->spec->value, "moment") == 0;
+    const bool moment = strcmp(m->spec->value, "moment") == 0 || strcmp(component, "moment") == 0;
+    m->source = contact ? OF_ALL_CONTACTS : OF_REACTION;
+    m->component = moment ? 2 : axis;
+    m->unit = moment ? "N m" : "N";
+    return (contact || domain->ops->reaction != NULL) && m->component >= 0;
+}
+
+/* A field that is the same number all over the body. */
+static bool find_common(monitor *m, const ab_domain *domain, const char *unit) {
+    const ab_field *field = ab_monitor_field(domain, m->spec->value);
+    if (field == NULL || field->components != 1 || domain->ops->count(domain) == 0) return false;
+    m->source = OF_POINTS;
+    m->field = field->name;
+    m->unit = unit;
+    m->component = 0;
+    m->gather = AT_POINT;
+    m->selected = calloc(1, sizeof *m->selected); /* the first point there is */
+    m->selected_count = 1;
+    return m->selected != NULL;
+}
+
 static bool find_value(monitor *m, const ab_state_view *view) {
     const ab_monitor_spec *spec = m->spec;
     char base[128];
@@ -164,16 +188,21 @@ static bool find_value(monitor *m, const ab_state_view *view) {
         m->unit = "s";
         return strcmp(spec->value, "dt") == 0 || (axis < (int)view->scene->dimension && find_motion(m, base, axis, true));
     }
-    if (axis >= view->domains[spec->body]->dimension) return false;
+    const ab_domain *domain = view->domains[spec->body];
+    if (axis >= domain->dimension) return false;
     const bool whole = !spec->has_at && !spec->has_where && (spec->over == NULL || strcmp(spec->over, "mass") == 0);
     const bool is_mass = strcmp(base, "mass") == 0; /* of a point, or its mean, where that is asked for */
     if (whole && !(is_mass && spec->over != NULL) && find_motion(m, base, axis, false)) return true;
+    if (strcmp(base, "force") == 0 || strcmp(spec->value, "moment") == 0 || strcmp(base, "reaction") == 0)
+        return whole && find_force(m, domain, base, component, axis);
+    if (strcmp(spec->value, "rotation") == 0) return whole && find_common(m, domain, "rad");
     if (strcmp(spec->value, "rotation-rate") == 0) {
+        if (whole && find_common(m, domain, "s-1")) return true;
         m->source = OF_ROTATION;
         m->unit = "s-1";
         return whole;
     }
-    return find_points(m, view->domains[spec->body], base, component);
+    return find_points(m, domain, base, component);
 }
 
 static void find_nearest(monitor *m, const body_points *points, int dimension) {
@@ -217,13 +246,38 @@ static void find_where(monitor *m, const body_points *points, int dimension) {
     }
 }
 
+static bool is_in_contact(const ab_scene *scene, size_t body) {
+    for (size_t k = 0; k < scene->contact_count; k++)
+        if (scene->contacts[k].body[0] == body || scene->contacts[k].body[1] == body) return true;
+    return false;
+}
+
+/* A value that cannot be: why, where more can be said than that. */
+static ab_status complain(const ab_monitor_spec *spec, const ab_state_view *view, ab_report *report) {
+    const ab_domain *domain = spec->body >= 0 ? view->domains[spec->body] : NULL;
+    if (domain != NULL && strncmp(spec->value, "reaction.", 9) == 0 && domain->ops->reaction == NULL)
+        return ab_report_error(
+            report, spec->mark,
+            "monitor '%s': body '%s' is of %s and has no reaction: nodes of it cannot be fixed, nor its motion prescribed; what "
+            "sides of the grid take from it is in energy.boundary",
+            spec->name, domain->spec->name, domain->ops->method);
+    if (domain != NULL && strcmp(spec->value, "rotation") == 0)
+        return ab_report_error(report, spec->mark,
+                               "monitor '%s': body '%s' is of %s and has no one angle; rotation-rate is a value of every body", spec->name,
+                               domain->spec->name, domain->ops->method);
+    return ab_report_error(report, spec->mark, "monitor '%s': there is no value '%s' of %s", spec->name, spec->value,
+                           spec->contact >= 0 ? "a contact"
+                           : spec->body >= 0  ? "this body, or not in this form"
+                                              : "the whole scene");
+}
+
 static ab_status find(ab_monitors *monitors, monitor *m, const ab_state_view *view, ab_report *report) {
     const ab_monitor_spec *spec = m->spec;
-    if (!find_value(m, view))
-        return ab_report_error(report, spec->mark, "monitor '%s': there is no value '%s' of %s", spec->name, spec->value,
-                               spec->contact >= 0 ? "a contact"
-                               : spec->body >= 0  ? "this body, or not in this form"
-                                                  : "the whole scene");
+    if (!find_value(m, view)) return complain(spec, view, report);
+    if (m->source == OF_ALL_CONTACTS && !is_in_contact(view->scene, (size_t)spec->body))
+        return ab_report_error(report, spec->mark, "monitor '%s': body '%s' is in no contact, so none has a force on it", spec->name,
+                               view->scene->bodies[spec->body].name);
+    if (m->selected != NULL) return AB_OK; /* found already */
     if (m->source != OF_POINTS) return AB_OK;
     const bool all = !spec->has_at && (!spec->has_where || spec->where.all);
     if (all && m->quantity != THE_DISPLACEMENT) return AB_OK;

@@ -4,7 +4,7 @@
 
 #include "core/monitor.h"
 
-typedef enum source { OF_MOTION, OF_ENERGY, OF_CONTACT, OF_POINTS, OF_ROTATION, OF_DT } source;
+typedef enum source { OF_MOTION, OF_ENERGY, OF_CONTACT, OF_ALL_CONTACTS, OF_REACTION, OF_POINTS, OF_ROTATION, OF_DT } source;
 typedef enum quantity { THE_COMPONENT, THE_LENGTH, THE_PRESSURE, THE_DISPLACEMENT } quantity; /* what is made of a field's components */
 typedef enum gather { AT_POINT, MEAN_BY_MASS, MEAN_BY_VOLUME, LARGEST, SMALLEST, SUM } gather;
 
@@ -35,7 +35,7 @@ typedef struct monitor {
     bool is_size;    /* the number is a size_t */
     bool by_mass;    /* momentum / mass */
     bool from_start; /* displacement: less the value at the start */
-    int component;
+    int component;   /* of a field; of a force: 0, 1, or 2 for its moment */
     const char *unit, *field;
     size_t *selected; /* points at the start, ascending; NULL: all */
     size_t selected_count;

@@ -66,6 +66,15 @@ static ab_status clear(const ab_results *results, ab_report *report) {
     return AB_OK;
 }
 
+ab_status ab_results_check(const ab_scene *scene, const ab_state_view *view, ab_report *report) {
+    ab_results *results = calloc(1, sizeof *results);
+    if (results == NULL) return ab_report_failure(report, "no memory for results");
+    results->scene = scene;
+    const ab_status status = find_all(results, view, report);
+    ab_results_destroy(results);
+    return status;
+}
+
 ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **result, ab_report *report) {
     ab_results *results = calloc(1, sizeof *results);
     *result = NULL;

@@ -31,6 +31,8 @@ typedef struct ab_state_view { /* what monitors and writers look at; borrowed fr
 
 typedef struct ab_results ab_results;
 
+/* Are there all the values and fields that monitors, expects and output ask for? Nothing is made. */
+ab_status ab_results_check(const ab_scene *scene, const ab_state_view *view, ab_report *report);
 /* Makes the folder and files. Nothing is written when anything is wrong. */
 ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **results, ab_report *report);
 /* After every step (and once before the first): history row when due, monitors and expects always, a frame when due. */

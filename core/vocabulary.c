@@ -11,8 +11,9 @@
         {"energy.potential", "J", "potential energy in gravity, from the start"},                                                          \
         {"energy.plastic", "J", "dissipated in the material so far"}, {"energy.friction", "J", "dissipated by slip in contact so far"},    \
         {"energy.contact", "J", "lost by normal impulses in contact so far"},                                                              \
-        {"energy.boundary", "J", "taken away by sides of the grid so far"}, {"energy.damping", "J", "taken away by local damping so far"}, \
-        {"energy.external", "J", "work of tractions so far"}, {"energy.outflow", "J", "carried out by points that left so far"},           \
+        {"energy.boundary", "J", "taken away by sides of the grid, fixed and prescribed nodes and motions so far"},                        \
+        {"energy.damping", "J", "taken away by local damping so far"}, {"energy.external", "J", "work of loads so far"},                   \
+        {"energy.outflow", "J", "carried out by points that left so far"},                                                                 \
         {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, {                                                \
         "energy.total", "J", "kinetic + strain + potential"                                                                                \
     }
@@ -24,7 +25,8 @@
     }
 
 static const ab_word body_values[] = {
-    {"position.x", "m", "place along x"},
+    {"position.x", "m",
+     "place along x; with `at`, as all values of points, of the point nearest to that place at the start, in a mesh the nearest node"},
     {"position.y", "m", "place along y"},
     {"displacement.x", "m", "displacement along x since the start"},
     {"displacement.y", "m", "displacement along y since the start"},
@@ -38,14 +40,21 @@ static const ab_word body_values[] = {
     {"pressure", "Pa", "minus the mean normal stress"},
     {"volume", "m2", "volume (per m of thickness)"},
     MOMENTUM_WORDS,
-    {"rotation-rate", "s-1", "angular momentum about the centre of mass by the moment of inertia"},
+    {"rotation-rate", "s-1", "angular momentum about the centre of mass by the moment of inertia; the spin of a rigid body"},
+    {"rotation", "rad", "angle through which a rigid body has turned, counter-clockwise"},
+    {"force.x", "N", "sum of the contact forces on the body along x, of all contacts it is in (per m of thickness)"},
+    {"force.y", "N", "sum of the contact forces on the body along y"},
+    {"moment", "N m", "moment of the contact forces on the body about its centre of mass, counter-clockwise"},
+    {"reaction.x", "N", "force along x that fixed and prescribed nodes, or the prescribed motion of a rigid body, put on the body"},
+    {"reaction.y", "N", "the same along y"},
+    {"reaction.moment", "N m", "moment of the same about the origin, counter-clockwise"},
     ENERGY_WORDS,
 };
 
 static const ab_word contact_values[] = {
     {"force.x", "N", "total contact force on the second body along x (per m of thickness)"},
     {"force.y", "N", "total contact force on the second body along y"},
-    {"moment", "N m", "moment of the contact forces on the second body about the origin"},
+    {"moment", "N m", "moment of the contact forces on the second body about the origin, counter-clockwise"},
     {"normal-force", "N", "sum of the sizes of the normal parts"},
     {"friction-force", "N", "size of the sum of the tangential parts"},
     {"points", "1", "contact points found"},
@@ -98,17 +107,17 @@ static const ab_word columns[] = {
     {"plastic", "J", "dissipated in the material so far"},
     {"friction", "J", "dissipated by slip in contact so far"},
     {"contact", "J", "lost by normal impulses in contact so far"},
-    {"boundary", "J", "taken away by sides of the grid so far"},
+    {"boundary", "J", "taken away by sides of the grid, fixed and prescribed nodes and motions so far"},
     {"damping", "J", "taken away by local damping so far"},
-    {"external", "J", "work of tractions so far"},
+    {"external", "J", "work of loads so far"},
     {"outflow", "J", "carried out by points that left; only where a side of the grid says outflow"},
     {"remainder", "J", "what the discretisation made (+) or lost (-) so far"},
 };
 
 static const ab_word fields[] = {
-    {"velocity", "m s-1", "velocity of each point"},
+    {"velocity", "m s-1", "velocity of each point, or node of a mesh"},
     {"displacement", "m", "displacement of each point since the start"},
-    {"stress", "Pa", "Cauchy stress (xx, yy, zz, xy), tension positive"},
+    {"stress", "Pa", "Cauchy stress (xx, yy, zz, xy), tension positive; at nodes of a mesh from the elements around"},
     {"volume", "m2", "volume of each point (per m of thickness)"},
     {"mass", "kg", "mass of each point (per m of thickness)"},
 };

@@ -1,6 +1,7 @@
 /* fake_domain.h: a body with numbers that are known, for the tests of what a run leaves. Point p (id p) starts at (p, 2p) and moves with velocity
  * (1, 0.5); stress (10, 20, 30, 4) times (p + 1); mass p + 1; volume 2. Points with id < `lost` have left. fake_mesh makes nodes of
- * them, in other places: eight go round one quadratic element of 2 x 2, any other number is a strip of square elements, two nodes at each x. */
+ * them, in other places: eight go round one quadratic element of 2 x 2, any other number is a strip of square elements, two nodes at each x. It turns
+ * by 0.25 rad a second, and something holds it with (2, -3) N and 5 N m times t. */
 #ifndef FAKE_DOMAIN_H
 #define FAKE_DOMAIN_H
 
@@ -21,18 +22,15 @@ static inline size_t fake_count(const ab_domain *domain) {
     return fake->start - fake->lost;
 }
 
+static inline bool fake_is_mesh(const ab_domain *domain) { return domain->ops->cells != NULL; }
+
 static inline const ab_field *fake_fields(const ab_domain *domain, size_t *count) {
-    static const ab_field fields[] = {{"position", "m", 2, "x y"},
-                                      {"velocity", "m s-1", 2, "x y"},
-                                      {"stress", "Pa", 4, "xx yy zz xy"},
-                                      {"mass", "kg", 1, NULL},
-                                      {"volume", "m2", 1, NULL}};
-    (void)domain;
-    *count = sizeof fields / sizeof *fields;
+    static const ab_field fields[] = {{"position", "m", 2, "x y"},      {"velocity", "m s-1", 2, "x y"}, {"stress", "Pa", 4, "xx yy zz xy"},
+                                      {"mass", "kg", 1, NULL},          {"volume", "m2", 1, NULL},       {"rotation", "1", 1, NULL},
+                                      {"rotation-rate", "s-1", 1, NULL}};
+    *count = sizeof fields / sizeof *fields - (fake_is_mesh(domain) ? 0 : 2);
     return fields;
 }
-
-static inline bool fake_is_mesh(const ab_domain *domain) { return domain->ops->cells != NULL; }
 
 /* Where point or node `id` stands at time 0. */
 static inline void fake_place(const ab_domain *domain, size_t id, double place[2]) {
@@ -54,6 +52,10 @@ static inline ab_status fake_read(const ab_domain *domain, const char *field, do
             values[k] = id + 1;
         else if (strcmp(field, "volume") == 0)
             values[k] = 2;
+        else if (strcmp(field, "rotation") == 0)
+            values[k] = 0.25 * t;
+        else if (strcmp(field, "rotation-rate") == 0)
+            values[k] = 0.25;
         else if (strcmp(field, "position") == 0) {
             fake_place(domain, k + fake->lost, values + 2 * k);
             values[2 * k] += t, values[2 * k + 1] += 0.5 * t;
@@ -128,8 +130,11 @@ static inline void fake_update(fake_run *run, long step, double dt) {
         run->view.total.strain += run->energy[b].strain;
         run->view.total.friction += run->energy[b].friction;
     }
-    run->contacts[0] =
-        (ab_contact_totals){.force = {0, 7 * run->view.time, 0}, .normal_force = 7 * run->view.time, .points = 3, .active = 2};
+    run->contacts[0] = (ab_contact_totals){.force = {3 * run->view.time, 7 * run->view.time, 0},
+                                           .moment = 40 * run->view.time,
+                                           .normal_force = 7 * run->view.time,
+                                           .points = 3,
+                                           .active = 2};
 }
 
 static inline fake_run *fake_create(size_t first, size_t second) {
