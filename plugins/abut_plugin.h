@@ -203,6 +203,8 @@ typedef struct ab_surface {
     size_t face_count;
     const uint32_t *face_vertex; /* 3 per face: first, last, middle (UINT32_MAX: a straight face) */
     const uint32_t *face_beside; /* 2 per face: the face before its first vertex, the face after its last (UINT32_MAX: none) */
+    const uint32_t *point_vertex; /* point_count: the body's own vertex that the point is, so that its own faces say where its outside is
+                                     (UINT32_MAX: none); NULL: no point is one (material points) */
 } ab_surface;
 
 /* One body of a pair as a finder sees it. Shared nodes: grid nodes that have mass of both bodies; item i of side a and item i of
@@ -256,6 +258,7 @@ typedef struct ab_points {
     double *stiffness; /* N/m (per m of thickness), written by a response that acts as a spring: the host keeps dt below 2 sqrt(m/k). Zeroed by the host */
     double modulus;    /* Pa: P-wave modulus of the softer body */
     size_t failures;   /* find adds what it could not decide; the run's summary shows the sum */
+    double speed;      /* m/s: with AB_NEED_SURFACE, no place listed on one surface moves faster than this against one of the other */
 } ab_points;
 
 typedef struct ab_contact_ops {
