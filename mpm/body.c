@@ -34,6 +34,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
     mpm_trace_destroy(body->trace);
+    mpm_surface_destroy(body->surface);
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
 
@@ -245,6 +246,8 @@ static void dofs(const ab_domain *domain, ab_dofs *d) {
                    .mass_stride = OWN_RECORD};
 }
 
+static double modulus(const ab_domain *domain) { return ((const mpm_body *)domain)->modulus; }
+
 static int compare_cells(const void *a, const void *b) {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return (x > y) - (x < y);
@@ -298,7 +301,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
 #define SAME_IN_ALL                                                                                                                        \
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
-    .read = mpm_read, .plan = plan
+    .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = plan
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};

@@ -136,6 +136,7 @@ struct mpm_body {
 
     /* what a contact finder was last shown */
     struct mpm_trace *trace;
+    struct mpm_surface *surface; /* its points in cells where another body has faces */
     size_t fixed_bytes;
 };
 
@@ -173,6 +174,10 @@ void mpm_loads_follow(mpm_body *, const ab_step *); /* with the velocities that 
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 void mpm_trace_destroy(struct mpm_trace *);
+
+/* surface.c */
+ab_status mpm_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_report *);
+void mpm_surface_destroy(struct mpm_surface *);
 
 /* fields.c */
 ab_status mpm_fields_create(mpm_body *, ab_report *);

@@ -9,11 +9,11 @@
 void mpm_rows_plan(mpm_body *body) {
     const ab_class *class_ = &body->material->loaded->class_;
     mpm_rows rows = {.count = ROW_OTHERS, .extent = -1, .half = -1, .inverse_half = -1, .gradient = -1, .state = -1};
-    bool gap = false; /* a finder that looks at near points needs the size of a point in every direction */
+    bool gap = false; /* a finder that looks at points near nodes or faces needs the size of a point in every direction */
     for (size_t k = 0; k < body->scene->contact_count; ++k) {
         const ab_contact_spec *contact = body->scene->contacts + k;
         const bool mine = contact->body[0] == body->domain.index || contact->body[1] == body->domain.index;
-        if (mine && (contact->finder->class_.needs & AB_NEED_NEAR_POINTS)) gap = true;
+        if (mine && (contact->finder->class_.needs & (AB_NEED_NEAR_POINTS | AB_NEED_SURFACE))) gap = true;
     }
     const bool gimp = body->kernel->nodes == 3;
     if (gap || (gimp && body->contiguous)) rows.extent = rows.count, rows.count += 3;

@@ -188,7 +188,8 @@ typedef struct ab_surface {
     size_t point_count, point_ld;
     const double *point_position; /* m; dimension rows */
     const double *point_extent;   /* m2; symmetric, as near_extent: the half size along n is sqrt(n.A.n); 0 for nodes */
-    const double *point_area;     /* m2 (m in plane strain): share of the surface; of a material point, the width of its domain */
+    const double *point_area;     /* m2 (m in plane strain): share of the surface; of a material point sqrt(V), so that on a face
+                                     with normal n it stands for area^2/(2 half size along n): exact where a side of its domain lies along the face */
     const uint64_t *point_key;    /* names the point in every step */
     const size_t *point_start;    /* point_count + 1: its stencil */
     const uint32_t *point_dof;
