@@ -10,6 +10,7 @@ typedef struct fem_mesh {
     double *x;                      /* 2 a node, m, as drawn */
     uint32_t *connectivity;         /* nodes an element */
     uint64_t *node_id, *element_id; /* as in the file, for messages; NULL: places from 0 */
+    double low[2], high[2];         /* bounds of the nodes, m */
 } fem_mesh;
 
 /* The mesh of a body with spec->mesh, checked: no orphan nodes, no inverted or duplicate element, positive det J at all Gauss points. Mistakes name the place in
@@ -19,7 +20,9 @@ void fem_mesh_destroy(fem_mesh *);
 
 static const uint32_t FEM_NONE = UINT32_MAX;
 
-/* The outer faces of a mesh, from its connectivity: sides that belong to one element. Going from vertex 0 to vertex 1 the body is on the left. */
+/* The outer faces of a mesh, from its connectivity: sides that belong to one element, in the order of elements and sides. Going from vertex 0 to vertex 1 the body
+ * is on the left, so outlines go counter-clockwise and holes clockwise. Where two parts of the body touch in one node only, the chains of `beside` do not change
+ * from one part to the other: the next face is found by turning about the node through elements that share sides. */
 typedef struct fem_faces {
     size_t count;
     uint32_t *vertex;  /* 3 a face: first, last, middle node (FEM_NONE: linear) */
@@ -27,14 +30,16 @@ typedef struct fem_faces {
     uint32_t *element; /* that the face belongs to */
     uint8_t *side;     /* of it: 0..3 */
     size_t node_count;
-    uint32_t *node; /* nodes on outer faces, ascending */
+    uint32_t *node;  /* nodes on outer faces, ascending */
+    uint32_t *start; /* node_count + 1: the faces of the k-th of them, corners and middles alike: face[start[k]] .. */
+    uint32_t *face;
 } fem_faces;
 
 ab_status fem_faces_create(const fem_mesh *, const char *body, fem_faces **faces, ab_report *);
 void fem_faces_destroy(fem_faces *);
 
-/* True where a place of the initial mesh is in the set. `side` means an outer face whose outward normal points that way by less than 45 degrees and that lies on the
- * outline; low, high: bounds of the mesh; slack 1e-9 of its size. A node belongs to a side when one of its faces does. */
+/* True where a place of the initial mesh is in the set. `side` means an outer face whose outward normal (of its chord) points that way by less than 45 degrees; slack of
+ * places 1e-9 of the mesh's size. A node belongs to a side when one of its faces does. */
 bool fem_where_node(const ab_where *, const fem_mesh *, const fem_faces *, uint32_t node);
 bool fem_where_face(const ab_where *, const fem_mesh *, const fem_faces *, size_t face); /* both ends in the set */
 
