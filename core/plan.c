@@ -42,6 +42,61 @@ static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
     }
 }
 
+/* What a class of contact looks at: for finders what they see of a body, for responses what they are told of a contact point. */
+static const struct {
+    uint32_t need;
+    const char *name;
+} CONTACT_NEEDS[] = {{AB_NEED_SHARED_NODES, "nodes of the grid that both have mass at"},
+                     {AB_NEED_MASS_GRADIENT, "mass gradients"},
+                     {AB_NEED_AREA_VECTOR, "area vectors"},
+                     {AB_NEED_NEAR_POINTS, "points near them"},
+                     {AB_NEED_SURFACE, "points and faces of the outlines"},
+                     {AB_NEED_DISTANCE, "distances from the stiffer body"}};
+enum { CONTACT_NEED_COUNT = sizeof CONTACT_NEEDS / sizeof *CONTACT_NEEDS };
+
+/* "a, b, c" of what a contact's finder and response need. */
+static void contact_needs(const ab_contact_spec *contact, char *words, size_t size) {
+    const uint32_t needs = contact->finder->class_.needs | (contact->responder ? contact->responder->class_.needs : 0);
+    words[0] = '\0';
+    for (size_t k = 0; k < CONTACT_NEED_COUNT; k++) {
+        const size_t used = strlen(words);
+        if (needs & CONTACT_NEEDS[k].need) snprintf(words + used, size - used, "%s%s", used ? ", " : "", CONTACT_NEEDS[k].name);
+    }
+}
+
+/* Whether a contact of body b (of any body: SIZE_MAX) needs that. */
+static bool contact_asks(const ab_scene *scene, size_t b, uint32_t need) {
+    for (size_t c = 0; c < scene->contact_count; c++) {
+        const ab_contact_spec *contact = &scene->contacts[c];
+        if ((b == SIZE_MAX || contact->body[0] == b || contact->body[1] == b) && contact->finder->class_.needs & need) return true;
+    }
+    return false;
+}
+
+static bool has_elements(const ab_domain *domain) { return domain->ops->cells != NULL; }
+
+/* What a body might cost and does not. */
+static void each_left_out_of_body(const ab_schedule *schedule, size_t b, item tell, ab_text *text, size_t *number) {
+    const ab_scene *scene = schedule->scene;
+    const char *name = scene->bodies[b].name;
+    char what[256];
+    if (scene->bodies[b].material < scene->material_count) {
+        const ab_loaded_class *loaded = scene->materials[scene->bodies[b].material].loaded;
+        if (loaded->class_.nstate == 0) {
+            snprintf(what, sizeof what, "%s of '%s' keeps none: no state arrays", loaded->class_.name, name);
+            tell(text, (*number)++, "state", what, NULL);
+        }
+        if (!(loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT)) {
+            snprintf(what, sizeof what, "%s of '%s' does not need it", loaded->class_.name, name);
+            tell(text, (*number)++, "deformation gradient", what, NULL);
+        }
+    }
+    if (has_elements(schedule->domains[b]) && !contact_asks(scene, b, AB_NEED_SHARED_NODES)) {
+        snprintf(what, sizeof what, "no contact looks for '%s' on the grid: no points inside its elements", name);
+        tell(text, (*number)++, "inner points", what, NULL);
+    }
+}
+
 /* What a scene might cost and this one does not. */
 static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text) {
     const ab_scene *scene = schedule->scene;
@@ -52,29 +107,22 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
              scene->body_count < 2 ? "there is one body: no contact pass, no contact plugin"
                                    : "no contact is asked for: no contact pass, no contact plugin",
              NULL);
+    else if (!contact_asks(scene, SIZE_MAX, AB_NEED_SURFACE))
+        tell(text, number++, "outlines", "no contact asks for the points and faces of outlines", NULL);
     tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
     if (scene->space == AB_SPACE_PLANE_STRAIN)
         tell(text, number++, "third dimension", "plane strain: no third component of velocity and force, no yz and zx of stress", NULL);
-    for (size_t b = 0; b < scene->body_count; b++) {
-        if (scene->bodies[b].material >= scene->material_count) continue;
-        const ab_loaded_class *loaded = scene->materials[scene->bodies[b].material].loaded;
-        if (loaded->class_.nstate == 0) {
-            snprintf(what, sizeof what, "%s of '%s' keeps none: no state arrays", loaded->class_.name, scene->bodies[b].name);
-            tell(text, number++, "state", what, NULL);
-        }
-        if (!(loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT)) {
-            snprintf(what, sizeof what, "%s of '%s' does not need it", loaded->class_.name, scene->bodies[b].name);
-            tell(text, number++, "deformation gradient", what, NULL);
-        }
-    }
     double cells = 0.0;
+    bool known = true;
     for (size_t b = 0; b < schedule->body_count; b++) {
         ab_plan_body body;
         schedule->domains[b]->ops->plan(schedule->domains[b], &body);
+        each_left_out_of_body(schedule, b, tell, text, &number);
         cells += (double)body.cells;
+        known = known && (body.cells > 0 || has_elements(schedule->domains[b]));
     }
     const double all = (double)scene->grid_cells[0] * scene->grid_cells[1];
-    if (all > cells) {
+    if (scene->grid_cell > 0.0 && known && all > cells) {
         snprintf(what, sizeof what, "%.0f of %.0f cells of the grid hold no material: no memory, no time", all - cells, all);
         tell(text, number++, "empty grid", what, NULL);
     }
@@ -89,12 +137,15 @@ static double steps_of(const ab_schedule *schedule) {
     return (double)schedule->number + (schedule->dt > 0.0 ? ceil(left / schedule->dt - 1e-9) : 0.0);
 }
 
-static ab_plan_body totals_of(const ab_schedule *schedule) {
+/* points: of clouds; *nodes: of meshes. */
+static ab_plan_body totals_of(const ab_schedule *schedule, size_t *nodes) {
     ab_plan_body sum = {0};
+    *nodes = 0;
     for (size_t b = 0; b < schedule->body_count; b++) {
         ab_plan_body body;
         schedule->domains[b]->ops->plan(schedule->domains[b], &body);
-        sum.points += body.points;
+        *(has_elements(schedule->domains[b]) ? nodes : &sum.points) += body.points;
+        sum.elements += body.elements;
         sum.cells += body.cells;
         sum.tiles += body.tiles;
         sum.bytes += body.bytes;
@@ -144,9 +195,18 @@ static void json_left_out(ab_text *text, size_t number, const char *name, const 
     add_string(text, number ? ",\n    " : "\n    ", line);
 }
 
+/* dt at which a spring of contact is neutrally stable, as far as any is in touch; INFINITY: none. */
+static double contact_dt(const ab_schedule *schedule, const char **limit) {
+    const ab_interaction *in = schedule->interaction;
+    *limit = "";
+    return in && in->critical_dt ? in->critical_dt(in, limit) : INFINITY;
+}
+
 void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_options *options, double seconds_per_step) {
     const ab_scene *scene = schedule->scene;
-    const ab_plan_body sum = totals_of(schedule);
+    size_t nodes;
+    const ab_plan_body sum = totals_of(schedule, &nodes);
+    const char *limit;
     add_string(text, "{\n  \"scene\": ", scene->path);
     ab_text_add(text, ",\n  \"bodies\": [");
     for (size_t b = 0; b < schedule->body_count; b++) {
@@ -155,8 +215,12 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
         domain->ops->plan(schedule->domains[b], &body);
         add_string(text, b ? ",\n    {\"name\": " : "\n    {\"name\": ", scene->bodies[b].name);
         add_string(text, ", \"method\": ", domain->ops->method);
-        ab_text_add(text, ", \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"bytes_per_point\": %zu", body.points,
-                    body.cells, body.tiles, body.bytes, body.bytes_per_point);
+        if (has_elements(domain))
+            ab_text_add(text, ", \"nodes\": %zu, \"elements\": %zu", body.points, body.elements);
+        else
+            ab_text_add(text, ", \"points\": %zu", body.points);
+        ab_text_add(text, ", \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu", body.cells, body.tiles, body.bytes);
+        if (!has_elements(domain)) ab_text_add(text, ", \"bytes_per_point\": %zu", body.bytes_per_point);
         add_words(text, ", \"fields\": ", body.fields);
         add_words(text, ", \"passes\": ", body.passes);
         ab_text_add(text, "}");
@@ -168,17 +232,22 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
         add_string(text, ", ", scene->bodies[contact->body[1]].name);
         add_string(text, "], \"algorithm\": ", contact->finder->class_.name);
         add_string(text, ", \"response\": ", contact->responder ? contact->responder->class_.name : contact->finder->class_.name);
+        char needs[256];
+        contact_needs(contact, needs, sizeof needs);
+        add_words(text, ", \"needs\": ", needs);
         ab_text_add(text, ", \"passes\": [\"find\", \"respond\"]}");
     }
     ab_text_add(text, "],\n  \"contact_passes\": %zu,\n  \"boundary_passes\": 0,\n  \"plugins\": [", scene->contact_count);
     each_plugin(scene, json_plugin, text);
     ab_text_add(text, "],\n  \"not_paid_for\": [");
     each_left_out(schedule, json_left_out, text);
-    ab_text_add(text, "],\n  \"points\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"threads\": %d", sum.points, sum.cells,
-                sum.tiles, sum.bytes, options->threads);
+    ab_text_add(text,
+                "],\n  \"points\": %zu, \"nodes\": %zu, \"elements\": %zu, \"cells\": %zu, \"tiles\": %zu, \"bytes\": %zu, \"threads\": %d",
+                sum.points, nodes, sum.elements, sum.cells, sum.tiles, sum.bytes, options->threads);
     add_number(text, ",\n  \"dt\": ", schedule->dt);
     add_number(text, ", \"critical_dt\": ", schedule->critical_dt);
     add_string(text, ", \"limit\": ", schedule->limit);
+    add_number(text, ", \"contact_critical_dt\": ", contact_dt(schedule, &limit)); /* null: none of its own, or not in touch yet */
     add_number(text, ",\n  \"steps\": ", steps_of(schedule));
     add_number(text, ", \"estimated_seconds\": ", seconds_per_step > 0.0 ? seconds_per_step * steps_of(schedule) : NAN);
     ab_text_add(text, "\n}");
@@ -219,33 +288,50 @@ static void add_seconds(ab_text *text, double seconds) {
 
 void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_options *options, double seconds_per_step) {
     const ab_scene *scene = schedule->scene;
-    const ab_plan_body sum = totals_of(schedule);
+    size_t nodes;
+    const ab_plan_body sum = totals_of(schedule, &nodes);
+    const char *limit;
     if (scene->title && scene->title[0]) ab_text_add(text, "%s\n\n", scene->title);
     ab_text_add(text, "Bodies\n");
     for (size_t b = 0; b < schedule->body_count; b++) {
         const ab_domain *domain = schedule->domains[b];
         ab_plan_body body;
         domain->ops->plan(schedule->domains[b], &body);
-        ab_text_add(text, "  %s: %s, %zu points in %zu cells (%zu tiles), %zu bytes a point, ", scene->bodies[b].name, domain->ops->method,
-                    body.points, body.cells, body.tiles, body.bytes_per_point);
+        ab_text_add(text, "  %s: %s, ", scene->bodies[b].name, domain->ops->method);
+        if (has_elements(domain)) {
+            ab_text_add(text, "%zu nodes in %zu element%s, ", body.points, body.elements, body.elements == 1 ? "" : "s");
+            if (body.tiles) ab_text_add(text, "seen on the grid in %zu cells (%zu tiles), ", body.cells, body.tiles);
+        } else {
+            ab_text_add(text, "%zu points in %zu cells (%zu tiles), %zu bytes a point, ", body.points, body.cells, body.tiles,
+                        body.bytes_per_point);
+        }
         add_bytes(text, body.bytes);
         ab_text_add(text, " in all\n    fields: %s\n    each step: %s\n", body.fields, body.passes);
     }
     if (scene->contact_count) ab_text_add(text, "\nContacts\n");
     for (size_t c = 0; c < scene->contact_count; c++) {
         const ab_contact_spec *contact = &scene->contacts[c];
-        ab_text_add(text, "  %s and %s: each step: find (%s), respond (%s), where their tiles meet\n", scene->bodies[contact->body[0]].name,
+        char needs[256];
+        contact_needs(contact, needs, sizeof needs);
+        ab_text_add(text, "  %s and %s: each step: find (%s), respond (%s)%s\n", scene->bodies[contact->body[0]].name,
                     scene->bodies[contact->body[1]].name, contact->finder->class_.name,
-                    contact->responder ? contact->responder->class_.name : contact->finder->class_.name);
+                    contact->responder ? contact->responder->class_.name : contact->finder->class_.name,
+                    contact->finder->class_.needs & AB_NEED_SHARED_NODES ? ", where their tiles meet" : "");
+        if (needs[0]) ab_text_add(text, "    needs: %s\n", needs);
     }
     ab_text_add(text, "\nPlugins\n");
     each_plugin(scene, text_plugin, text);
     ab_text_add(text, "\nNot paid for\n");
     each_left_out(schedule, text_left_out, text);
-    ab_text_add(text, "\nCost\n  %zu points, ", sum.points);
+    ab_text_add(text, "\nCost\n  ");
+    if (sum.points || !nodes) ab_text_add(text, "%zu points, ", sum.points);
+    if (nodes) ab_text_add(text, "%zu nodes, %zu elements, ", nodes, sum.elements);
     add_bytes(text, sum.bytes);
-    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n  %.0f steps", options->threads,
-                options->threads == 1 ? "" : "s", schedule->dt, schedule->critical_dt, schedule->limit, steps_of(schedule));
+    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n", options->threads, options->threads == 1 ? "" : "s",
+                schedule->dt, schedule->critical_dt, schedule->limit);
+    const double spring = contact_dt(schedule, &limit);
+    if (isfinite(spring)) ab_text_add(text, "  contact alone allows %.4g s: %s\n", spring, limit);
+    ab_text_add(text, "  %.0f steps", steps_of(schedule));
     if (seconds_per_step > 0.0) {
         ab_text_add(text, ", about ");
         add_seconds(text, seconds_per_step * steps_of(schedule));
