@@ -13,6 +13,7 @@ typedef struct ab_contact_totals {      /* of one contact of the scene */
     size_t points, active;              /* contact points in the last step; those with an impulse */
     double penetration;                 /* m, deepest in the last step, >= 0 */
     double friction_work, contact_work; /* J so far */
+    size_t failures;                    /* what the finder could not decide, so far */
 } ab_contact_totals;
 
 typedef struct ab_state_view { /* what monitors and writers look at; borrowed from the scheduler */

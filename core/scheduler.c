@@ -135,6 +135,11 @@ static double choose_dt(ab_schedule *s) {
         const double dt = s->domains[b]->ops->critical_dt(s->domains[b], &limit);
         if (dt < critical) critical = dt, s->limit = limit;
     }
+    if (s->interaction && s->interaction->critical_dt) {
+        const char *limit = "";
+        const double dt = s->interaction->critical_dt(s->interaction, &limit);
+        if (dt < critical) critical = dt, s->limit = limit;
+    }
     s->critical_dt = critical;
     if (scene->time_dt > 0.0) {
         const double whole = scene->time_dt;
@@ -163,9 +168,30 @@ static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_rep
 }
 #define EACH(what) each(s, &step, offsetof(ab_domain_ops, what), report)
 
+/* Once: springs of contact are only known once bodies have met. */
+static void warn_of_dt(ab_schedule *s, ab_report *report) {
+    if (s->warned || !(s->scene->time_dt > s->critical_dt)) return;
+    s->warned = true;
+    ab_report_warning(report, s->scene->mark_time, "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", s->time,
+                      s->scene->time_dt, s->critical_dt, s->limit);
+}
+
+/* What contact finders had to leave undecided. */
+static void warn_of_failures(const ab_schedule *s, ab_report *report) {
+    const ab_contact_totals *totals = s->interaction ? s->interaction->totals(s->interaction) : NULL;
+    for (size_t c = 0; totals && c < s->scene->contact_count; ++c)
+        if (totals[c].failures > 0)
+            ab_report_warning(report, s->scene->contacts[c].mark,
+                              "contact of '%s' and '%s': %zu places could not be decided and were passed over (summary.json: failures); look "
+                              "for faces that have no length or are strongly bent",
+                              s->scene->bodies[s->scene->contacts[c].body[0]].name, s->scene->bodies[s->scene->contacts[c].body[1]].name,
+                              totals[c].failures);
+}
+
 ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     const double dt = choose_dt(s);
+    if (s->interaction) warn_of_dt(s, report);
     ab_step step = {.time = s->time, .dt = dt, .number = s->number};
     for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);
     step.damping = s->time < scene->damping_until ? scene->damping_local : 0.0;
@@ -223,12 +249,6 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
 }
 
 /* ---- a run --------------------------------------------------------------------------------------------------------------- */
-
-static void warn_of_dt(const ab_schedule *s, ab_report *report) {
-    if (s->scene->time_dt > s->critical_dt)
-        ab_report_warning(report, s->scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
-                          s->scene->time_dt, s->critical_dt, s->limit);
-}
 
 /* Steps until the end, a failure or a signal. */
 static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progress, ab_report *report) {
@@ -305,6 +325,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     facts.bytes_per_point = s->points ? bytes / s->points : 0;
     ab_schedule_view(s, &view);
     size_t missed = 0;
+    warn_of_failures(s, report);
     const ab_status closed = ab_results_frame(results, &view, report); /* the end, as far as it came */
     if (!options->quiet) ab_results_table(results, &view, &facts, stdout);
     const ab_status written = ab_results_close(results, &view, &facts, &missed, report);

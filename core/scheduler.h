@@ -26,6 +26,7 @@ typedef struct ab_schedule { /* a scene on its way through time */
     double time, dt, critical_dt;
     long number;
     const char *limit; /* what binds dt */
+    bool warned;       /* of a dt above the limit */
     ab_energy *energy, *energy_start, total;
     ab_motion *motion;
     double total_now, total_start; /* J: all terms of the ledger */

@@ -90,7 +90,7 @@ static void contacts(ab_text *text, const ab_results *results, const ab_state_vi
         number(text, ", \"penetration\": ", c->penetration);
         number(text, ", \"friction_work\": ", c->friction_work);
         number(text, ", \"contact_work\": ", c->contact_work);
-        ab_text_add(text, "}");
+        ab_text_add(text, ", \"failures\": %zu}", c->failures);
     }
     ab_text_add(text, "]");
 }
