@@ -13,8 +13,8 @@ static double now(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void ab_progress_begin(ab_progress *p, FILE *stream, bool quiet, double time_end, size_t points) {
-    *p = (ab_progress){.stream = stream, .quiet = quiet, .time_end = time_end, .points = points, .stride = 1};
+void ab_progress_begin(ab_progress *p, FILE *stream, bool quiet, double time_end, size_t work) {
+    *p = (ab_progress){.stream = stream, .quiet = quiet, .time_end = time_end, .work = work, .stride = 1};
     p->terminal = isatty(fileno(stream)) == 1;
     p->started = p->checked = p->shown = p->rate_clock = now();
 }
@@ -64,7 +64,7 @@ void ab_progress_format(const ab_progress *p, const ab_state_view *view, int wid
     snprintf(parts[0], sizeof parts[0], "%3d %%%s", (int)(100 * part), bar);
     snprintf(parts[1], sizeof parts[1], "  t %.4g of %.4g s", view->time, p->time_end);
     snprintf(parts[2], sizeof parts[2], "  left %-7s", left);
-    snprintf(parts[3], sizeof parts[3], "  %5.3g M/s", 1e-6 * p->points_per_second); /* point-steps */
+    snprintf(parts[3], sizeof parts[3], "  %5.3g M/s", 1e-6 * p->work_per_second); /* point-steps and element-steps */
     snprintf(parts[4], sizeof parts[4], "  remainder %+.1e J", view->remainder);
     snprintf(parts[5], sizeof parts[5], "  step %ld", view->step);
     snprintf(parts[6], sizeof parts[6], "  dt %.2e s", view->dt);
@@ -76,9 +76,9 @@ void ab_progress_format(const ab_progress *p, const ab_state_view *view, int wid
 
 static void measure(ab_progress *p, const ab_state_view *view, double clock) {
     const double span = clock - p->rate_clock;
-    if (span < 0.5 && p->points_per_second > 0) return; /* a rate over less jumps about */
+    if (span < 0.5 && p->work_per_second > 0) return; /* a rate over less jumps about */
     if (!(span > 0)) return;
-    p->points_per_second = (double)(view->step - p->rate_step) * (double)p->points / span;
+    p->work_per_second = (double)(view->step - p->rate_step) * (double)p->work / span;
     p->time_per_second = (view->time - p->rate_time) / span;
     p->rate_clock = clock;
     p->rate_step = view->step;

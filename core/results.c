@@ -167,11 +167,13 @@ static const double ALARM = 0.1, ROUNDING = 1e-6; /* of the kinetic energy: a bo
 static void alarm_of_remainder(const ab_results *results, const ab_state_view *view, ab_report *report) {
     const double moved = ab_results_moved(results, view);
     if (!(fabs(view->remainder) > ALARM * moved) || !(fabs(view->remainder) > ROUNDING * view->total.kinetic)) return;
+    bool points = false, elements = false;
+    for (size_t b = 0; b < view->scene->body_count; b++) *(view->domains[b]->ops->cells != NULL ? &elements : &points) = true;
     ab_report_warning(
         report, view->scene->mark_time,
-        "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; a finer grid, basis gimp, "
-        "update musl or a smaller dt may help",
-        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved);
+        "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s may help",
+        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved,
+        points ? "a finer grid, basis gimp, update musl, " : "", elements ? "more elements, " : "", "or a smaller dt");
 }
 
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */

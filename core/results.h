@@ -41,9 +41,10 @@ ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_rep
 /* A frame now, whatever is due (the end, a failure). */
 ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report);
 
-typedef struct ab_run_facts { /* for the summary and the closing table */
-    double wall_seconds, cpu_seconds, point_steps_per_second;
-    size_t peak_bytes, bytes_per_point, points;
+typedef struct ab_run_facts {                                                           /* for the summary and the closing table */
+    double wall_seconds, cpu_seconds, point_steps_per_second, element_steps_per_second; /* both over the same time: that of all steps */
+    size_t peak_bytes, bytes_per_point;
+    size_t points, nodes, elements; /* points of clouds; nodes and elements of meshes */
     long steps;
     int threads;
     const char *version, *outcome; /* "done", "failed: ...", "stopped by signal 2" */

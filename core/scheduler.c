@@ -259,10 +259,19 @@ static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progr
         ab_status status = AB_OK;
         TIMED(PHASE_RESULTS, status = ab_results_step(results, &view, report));
         AB_TRY(status);
-        s->steps_points += s->points;
         ab_progress_step(progress, &view);
     }
     return AB_OK;
+}
+
+static void count_work(ab_schedule *s) {
+    for (size_t b = 0; b < s->body_count; ++b) {
+        const ab_domain *domain = s->domains[b];
+        ab_cells cells = {0};
+        if (domain->ops->cells) domain->ops->cells(domain, &cells);
+        *(domain->ops->cells ? &s->nodes : &s->points) += domain->ops->count(domain);
+        s->elements += cells.count;
+    }
 }
 
 ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report *report) {
@@ -283,9 +292,9 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
         release_signals(&keeper);
         return status;
     }
-    for (size_t b = 0; b < s->body_count; ++b) s->points += s->domains[b]->ops->count(s->domains[b]);
+    count_work(s);
     ab_progress progress;
-    ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points);
+    ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points + s->elements);
     ab_text plan_json = {0};
     ab_plan_add_json(&plan_json, s, options, 0.0);
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -296,6 +305,8 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
                           .steps = s->number,
                           .threads = options->threads,
                           .points = s->points,
+                          .nodes = s->nodes,
+                          .elements = s->elements,
                           .version = ABUT_VERSION,
                           .outcome = "done",
                           .plan_json = plan_json.failed ? NULL : plan_json.bytes};
@@ -310,7 +321,9 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
         status = (ab_status)(128 + stop_signal);
     }
     const double stepping = facts.wall_seconds - s->phase_seconds[PHASE_RESULTS];
-    facts.point_steps_per_second = stepping > 0.0 ? (double)s->steps_points / stepping : 0.0;
+    const double rate = stepping > 0.0 ? (double)s->number / stepping : 0.0;
+    facts.point_steps_per_second = rate * (double)s->points;
+    facts.element_steps_per_second = rate * (double)s->elements;
     facts.peak_bytes = ab_memory_peak();
     for (int p = 0; p < PHASES; ++p) {
         facts.phase_names[p] = PHASE_NAMES[p];
@@ -320,7 +333,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     for (size_t b = 0; b < s->body_count; ++b) {
         ab_plan_body plan;
         s->domains[b]->ops->plan(s->domains[b], &plan);
-        bytes += plan.bytes;
+        if (!s->domains[b]->ops->cells) bytes += plan.bytes;
     }
     facts.bytes_per_point = s->points ? bytes / s->points : 0;
     ab_schedule_view(s, &view);

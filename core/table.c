@@ -45,12 +45,28 @@ static void expects(const ab_results *results, FILE *stream) {
     }
 }
 
+/* "120 points", "30 elements", or both: what a step goes over. */
+static void work(const ab_run_facts *facts, char *text, size_t size) {
+    char elements[64];
+    snprintf(elements, sizeof elements, "%zu element%s", facts->elements, facts->elements == 1 ? "" : "s");
+    if (facts->elements == 0)
+        snprintf(text, size, "%zu points", facts->points);
+    else if (facts->points == 0)
+        snprintf(text, size, "%s", elements);
+    else
+        snprintf(text, size, "%zu points and %s", facts->points, elements);
+}
+
 void ab_results_table(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, FILE *stream) {
-    fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %zu points in %.3g s (%.3g s of processor time, %d thread%s)\n", facts->outcome,
-            view->time, facts->steps, facts->points, facts->wall_seconds, facts->cpu_seconds, facts->threads,
-            facts->threads == 1 ? "" : "s");
-    fprintf(stream, "  %.4g million point-steps per second, %.4g MB at most\n", 1e-6 * facts->point_steps_per_second,
-            1e-6 * (double)facts->peak_bytes);
+    char what[128];
+    work(facts, what, sizeof what);
+    fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %s in %.3g s\n", facts->outcome, view->time, facts->steps, what, facts->wall_seconds);
+    fprintf(stream, "  %.3g s of processor time, %d thread%s, %.4g MB at most\n  ", facts->cpu_seconds, facts->threads,
+            facts->threads == 1 ? "" : "s", 1e-6 * (double)facts->peak_bytes);
+    if (facts->points > 0 || facts->elements == 0) fprintf(stream, "%.4g million point-steps", 1e-6 * facts->point_steps_per_second);
+    if (facts->points > 0 && facts->elements > 0) fprintf(stream, " and ");
+    if (facts->elements > 0) fprintf(stream, "%.4g million element-steps", 1e-6 * facts->element_steps_per_second);
+    fprintf(stream, " per second\n");
     ledger(results, view, stream);
     contacts(results, view, stream);
     expects(results, stream);

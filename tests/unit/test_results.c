@@ -308,6 +308,62 @@ static void test_a_body_of_elements_alone_has_its_own_file(void **state) {
     free(run);
 }
 
+/* The head of the closing table and the costs in summary.json. */
+static void check_speed(const ab_run_facts *what, const char *head, const char *speed, const char *summary) {
+    fake_run *run = fake_create(6, 3);
+    ab_report *report = ab_report_create();
+    ab_results *results = NULL;
+    size_t missed = 9;
+    assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
+    FILE *table = fopen(path_of("table.txt"), "w");
+    ab_results_table(results, &run->view, what, table);
+    fclose(table);
+    assert_int_equal(ab_results_close(results, &run->view, what, &missed, report), AB_OK);
+    ab_results_destroy(results);
+    check_text("table.txt", head);
+    check_text("table.txt", speed);
+    check_text("summary.json", summary);
+    ab_report_destroy(report);
+    free(run);
+}
+
+static void test_points_and_elements_are_counted_apart(void **state) {
+    (void)state;
+    ab_run_facts both = facts;
+    both.nodes = 9, both.elements = 2;
+    both.point_steps_per_second = 3e6, both.element_steps_per_second = 5e5;
+    check_speed(&both, "10 steps of 7 points and 2 elements in 1 s\n",
+                "\n  3 million point-steps and 0.5 million element-steps per second\n",
+                "\"points\": 7,\n  \"nodes\": 9,\n  \"elements\": 2,");
+    both.points = 0;
+    check_speed(&both, "10 steps of 2 elements in 1 s\n", "\n  0.5 million element-steps per second\n",
+                "\"element_steps_per_second\": 500000");
+    both.points = 7, both.elements = 0;
+    check_speed(&both, "10 steps of 7 points in 1 s\n", "\n  3 million point-steps per second\n", "\"elements\": 0,");
+}
+
+static void test_the_alarm_names_remedies_for_the_bodies_there_are(void **state) {
+    (void)state;
+    static const char *const remedies[] = {"a finer grid, basis gimp, update musl, or a smaller dt",
+                                           "update musl, more elements, or a smaller dt", "build on; more elements, or a smaller dt"};
+    for (int meshes = 0; meshes < 3; meshes++) {
+        fake_run *run = fake_create(6, 8);
+        ab_report *report = ab_report_create();
+        ab_results *results = NULL;
+        size_t missed = 9;
+        for (int b = 0; b < meshes; b++) fake_mesh(run, b);
+        assert_int_equal(ab_results_open(folder, &run->scene, &run->view, &results, report), AB_OK);
+        assert_int_equal(run_steps(results, run, 0, 3, report), AB_OK);
+        run->view.remainder = 1;
+        assert_int_equal(ab_results_close(results, &run->view, &facts, &missed, report), AB_OK);
+        ab_results_destroy(results);
+        assert_int_equal(ab_report_warnings(report), 1);
+        assert_non_null(strstr(ab_report_text(report, 0), remedies[meshes]));
+        ab_report_destroy(report);
+        free(run);
+    }
+}
+
 static void test_points_that_left(void **state) {
     (void)state;
     fake_run *run = fake_create(4, 3);
@@ -444,6 +500,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_history_alone_when_no_output_is_asked_for, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_elements_are_shown_as_such, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_a_body_of_elements_alone_has_its_own_file, fresh_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_points_and_elements_are_counted_apart, fresh_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_the_alarm_names_remedies_for_the_bodies_there_are, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_points_that_left, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_a_full_disk_takes_nothing_back, fresh_folder, remove_folder),
         cmocka_unit_test_setup_teardown(test_no_room_to_gather_keeps_the_links, fresh_folder, remove_folder),
