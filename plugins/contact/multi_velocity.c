@@ -92,6 +92,24 @@ static double distance(const ab_trace *a, const ab_trace *b, size_t i, const dou
     return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0);
 }
 
+/* From node i to the nearest material of a body: the least distance to the domains of the points near it, each taken as a box that lies along n. */
+static double distance_to(const ab_trace *t, size_t i, const double n[3]) {
+    const uint32_t d = t->dimension;
+    double least = INFINITY;
+    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+        double r[3] = {0}, along = 0.0;
+        for (uint32_t c = 0; c < d; ++c) {
+            r[c] = t->near_position[c * t->near_ld + k] - t->position[c * t->ld + i];
+            along += r[c] * n[c];
+        }
+        for (uint32_t c = 0; c < d; ++c) r[c] -= along * n[c];
+        const double across = unit(r, d);
+        least =
+            fmin(least, hypot(fmax(fabs(along) - half_size(t, k, n), 0.0), across > 0.0 ? fmax(across - half_size(t, k, r), 0.0) : 0.0));
+    }
+    return least;
+}
+
 typedef struct clearance {
     double angle, distance, slope;
 } clearance; /* rad, m, m per rad */
@@ -248,6 +266,7 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
             out->position[c * out->ld + n] = a->position[c * a->ld + i];
         }
         out->gap[n] = gap;
+        if (out->distance) out->distance[n] = distance_to(a->stiffness >= b->stiffness ? a : b, i, normal);
         out->area[n] = area;
         out->key[n] = a->key[i];
         ++n;

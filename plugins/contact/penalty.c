@@ -1,0 +1,158 @@
+/* penalty.c: answers contact points with springs: a force of stiffness x penetration x area along the normal, viscous damping beside it, and across the
+ * normal a spring that slips at the Coulomb limit.
+ *
+ * Springs are explicit: their force is that of the places at the start of the step, so it does not change from round to round and needs dt below
+ * 2 sqrt(m/k). The viscous part is implicit in the velocity that all impulses of the step leave, and stable for any dt. */
+#include "abut_plugin.h"
+
+#include <math.h>
+
+enum { OF_MASS, OF_MODULUS };
+
+typedef struct penalty {
+    const ab_host *host;
+    double stiffness, damping, friction, tangential;
+    int of;
+} penalty;
+
+static const ab_param PARAMS[] = {
+    {"stiffness_of", "1",
+     "what stiffness is a multiple of. mass: of m/dt^2, m the effective mass of the contact point along the normal; it takes any dt and "
+     "gets "
+     "stiffer as dt gets smaller. modulus: of E/h per area, E the P-wave modulus of the softer body and h the cell; the same for any dt, "
+     "which "
+     "has to stay below 2 sqrt(m/k)",
+     "mass|modulus", AB_CHOICE, 0, OF_MASS, 0, 0},
+    {"stiffness", "1",
+     "multiple of what stiffness_of says: of mass at most 1; of modulus about 10: a pressure p then makes the bodies overlap by h p/(10 E)",
+     NULL, AB_REAL, AB_MIN_OPEN, 0.5, 0.0, 1e6},
+    {"damping", "1", "viscous part, along and across the normal, of the critical one; it never pulls and stays below the friction limit",
+     NULL, AB_REAL, 0, 0.0, 0.0, 1.0},
+    {"friction", "1", "coefficient of friction", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+    {"tangential", "1", "stiffness across the normal, of that along it", NULL, AB_REAL, AB_MIN_OPEN, 1.0, 0.0, 1.0},
+};
+
+static const ab_state STATES[] = {
+    {"elastic_slip", "m", "stretch of the spring across the normal", AB_VECTOR, AB_AVERAGE, 0.0},
+};
+
+static int create(const ab_host *host, const ab_value *settings, void **self) {
+    const int of = (int)settings[0].integer;
+    if (of == OF_MASS && settings[1].real > 1.0)
+        return host->message(host->context,
+                             "a stiffness above 1 x mass/dt^2 overshoots in a single step where points share nodes; use at most 1, or "
+                             "stiffness_of: modulus"),
+               -1;
+    penalty *law = host->allocate(host->context, sizeof *law);
+    if (!law) return -1;
+    *law = (penalty){host, settings[1].real, settings[2].real, settings[3].real, settings[4].real, of};
+    *self = law;
+    return 0;
+}
+
+static void destroy(void *self) {
+    penalty *law = self;
+    law->host->release(law->host->context, law);
+}
+
+/* The stretch of the tangential spring turned with the normal: as long as it was, in the plane that is tangential now. */
+static void turned_slip(const ab_points *p, size_t i, double slip[3]) {
+    const size_t ld = p->ld, d = p->dimension;
+    double along = 0.0, old = 0.0, now = 0.0;
+    for (size_t c = 0; c < d; ++c) {
+        slip[c] = p->state0[c * ld + i];
+        along += slip[c] * p->normal[c * ld + i];
+        old += slip[c] * slip[c];
+    }
+    for (size_t c = 0; c < d; ++c) {
+        slip[c] -= along * p->normal[c * ld + i];
+        now += slip[c] * slip[c];
+    }
+    const double scale = now > 0.0 ? sqrt(old / now) : 0.0;
+    for (size_t c = 0; c < d; ++c) slip[c] *= scale;
+}
+
+/* Tangential impulse under the limit mu lambda, and the stretch that the spring has then. A spring at the limit gives way: what is beyond is slip. across: the
+ * velocity across the normal that the bodies would have without the impulse. */
+static void slip_spring(const penalty *law, const ab_points *p, size_t i, double k, double limit, const double across[3],
+                        double impulse[3]) {
+    const size_t ld = p->ld, d = p->dimension;
+    const double dt = p->dt, m = p->tangential_mass[i], c_dt = 2.0 * law->damping * sqrt(k * m) * dt;
+    double slip[3] = {0}, stretch = 0.0, size = 0.0;
+    turned_slip(p, i, slip);
+    for (size_t c = 0; c < d; ++c) stretch += slip[c] * slip[c];
+    stretch = sqrt(stretch);
+    const double kept = stretch * k * dt > limit ? limit / (stretch * k * dt) : 1.0;
+    for (size_t c = 0; c < d; ++c) {
+        slip[c] *= kept;
+        impulse[c] = (dt * k * slip[c] + c_dt * across[c]) / (1.0 + c_dt / m);
+        size += impulse[c] * impulse[c];
+    }
+    size = sqrt(size);
+    const double scale = size > limit ? limit / size : 1.0;
+    for (size_t c = 0; c < d; ++c) {
+        impulse[c] *= scale;
+        p->state1[c * ld + i] = slip[c] + dt * (across[c] - impulse[c] / m);
+    }
+}
+
+/* Stiffness of point i along the normal, N/m. */
+static double normal_stiffness(const penalty *law, const ab_points *p, size_t i) {
+    return law->stiffness * (law->of == OF_MASS ? p->normal_mass[i] / (p->dt * p->dt) : p->modulus / p->cell * p->area[i]);
+}
+
+static int respond(void *self, ab_points *p, size_t first, size_t count) {
+    const penalty *law = self;
+    const size_t ld = p->ld, d = p->dimension;
+    if (law->of == OF_MODULUS && !(p->modulus > 0.0 && isfinite(p->modulus)))
+        return law->host->message(law->host->context, "stiffness_of: modulus needs a body that can be deformed; between rigid bodies use "
+                                                      "stiffness_of: mass"),
+               -1;
+    for (size_t i = first; i < first + count; ++i) {
+        const double depth = -p->gap[i], m = p->normal_mass[i], mt = p->tangential_mass[i], dt = p->dt;
+        double approach = 0.0, lambda = 0.0, impulse[3] = {0};
+        for (size_t c = 0; c < d; ++c) {
+            approach += p->relative_velocity[c * ld + i] * p->normal[c * ld + i];
+            lambda += p->impulse[c * ld + i] * p->normal[c * ld + i];
+            p->state1[c * ld + i] = 0.0;
+        }
+        if (depth > 0.0 && m > 0.0) {
+            const double k = normal_stiffness(law, p, i), c_dt = 2.0 * law->damping * sqrt(k * m) * dt, old = lambda;
+            if (p->stiffness && law->of == OF_MODULUS) p->stiffness[i] = k;
+            /* lambda = dt k depth + dt c (approach without lambda - lambda/m) */
+            lambda = fmax(0.0, (dt * k * depth + c_dt * (approach + old / m)) / (1.0 + c_dt / m));
+            if (law->friction > 0.0 && mt > 0.0) {
+                double across[3] = {0};
+                for (size_t c = 0; c < d; ++c) {
+                    const double n = p->normal[c * ld + i];
+                    across[c] = p->relative_velocity[c * ld + i] - approach * n + (p->impulse[c * ld + i] - old * n) / mt;
+                }
+                const double kt = law->tangential * (law->of == OF_MASS ? k / m * mt : k);
+                slip_spring(law, p, i, kt, law->friction * lambda, across, impulse);
+            }
+        } else
+            lambda = 0.0;
+        for (size_t c = 0; c < d; ++c) p->impulse[c * ld + i] = lambda * p->normal[c * ld + i] + impulse[c];
+    }
+    return 0;
+}
+
+static const ab_contact_ops OPS = {sizeof OPS, NULL, respond};
+static const ab_class CLASS = {
+    .struct_size = sizeof CLASS,
+    .kind = AB_CONTACT,
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .gives = AB_GIVE_IMPULSE,
+    .nparam = sizeof PARAMS / sizeof *PARAMS,
+    .nstate = sizeof STATES / sizeof *STATES,
+    .name = "penalty",
+    .help = "springs between bodies that overlap, with damping and friction",
+    .reference = "Wriggers 2006, Computational Contact Mechanics, ch. 6.3; friction by return of an elastic slip: Giannakopoulos 1989",
+    .param = PARAMS,
+    .state = STATES,
+    .create = create,
+    .destroy = destroy,
+    .ops = &OPS,
+};
+static const ab_class *const CLASSES[] = {&CLASS};
+const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "penalty", "1.0", "MIT", CLASSES};
