@@ -2,14 +2,13 @@
  * impulse each point wants, change both sides' dofs by the difference, until the impulses stand still. Linear momentum is kept because a
  * point takes from one side what it gives to the other. */
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "contact/contact.h"
 
-enum { MOST_ROUNDS = 200, NODES_PER_THREAD = 32 };
+enum { MOST_ROUNDS = 200 };
 static const double STANDSTILL = 1e-13; /* change of an impulse against the largest one of the step */
 
 typedef struct contact_all {
@@ -21,27 +20,12 @@ typedef struct contact_all {
     double *friction, *contact; /* per body */
     long found_step;            /* step whose points are at hand; -1: none */
     long answered_step;         /* step whose dynamic stage is done */
+    double critical_dt;         /* s, of the springs in the last dynamic stage; INFINITY: none */
+    char limit[256];            /* which spring that is */
 } contact_all;
 
-static void relative_velocity(const contact_pair *pair, const ab_dofs *a, const ab_dofs *b, bool old, size_t i, double v[2]) {
-    const ab_points *p = &pair->points.view;
-    v[0] = v[1] = 0.0;
-    for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
-        const double *u =
-            old ? a->velocity_old + (size_t)p->a_dof[s] * a->old_stride : a->velocity + (size_t)p->a_dof[s] * a->velocity_stride;
-        v[0] += p->a_weight[s] * u[0];
-        v[1] += p->a_weight[s] * u[1];
-    }
-    for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
-        const double *u =
-            old ? b->velocity_old + (size_t)p->b_dof[s] * b->old_stride : b->velocity + (size_t)p->b_dof[s] * b->velocity_stride;
-        v[0] -= p->b_weight[s] * u[0];
-        v[1] -= p->b_weight[s] * u[1];
-    }
-}
-
 /* Applies what point i wants beyond what its dofs have felt. Returns the size of the change, N s. */
-static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size_t i) {
+static double apply(contact_pair *pair, const contact_side side[2], size_t i) {
     ab_points *p = &pair->points.view;
     double j[2];
     for (size_t c = 0; c < 2; ++c) {
@@ -49,29 +33,15 @@ static double apply(contact_pair *pair, const ab_dofs *a, const ab_dofs *b, size
         pair->points.applied[c * p->ld + i] = p->impulse[c * p->ld + i];
     }
     if (j[0] == 0.0 && j[1] == 0.0) return 0.0;
-    for (size_t s = p->a_start[i]; s < p->a_start[i + 1]; ++s) {
-        const size_t k = p->a_dof[s];
-        for (size_t c = 0; c < 2; ++c)
-            a->velocity[k * a->velocity_stride + c] -= p->a_weight[s] * j[c] * a->inverse_mass[k * a->mass_stride + c];
-    }
-    for (size_t s = p->b_start[i]; s < p->b_start[i + 1]; ++s) {
-        const size_t k = p->b_dof[s];
-        for (size_t c = 0; c < 2; ++c)
-            b->velocity[k * b->velocity_stride + c] += p->b_weight[s] * j[c] * b->inverse_mass[k * b->mass_stride + c];
-    }
+    contact_push(side, i, j);
     return hypot(j[0], j[1]);
-}
-
-static ab_status complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
-    return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name,
-                             what, code, service->message[0] ? "the reason: " : "no reason", service->message);
 }
 
 /* The response's wishes for points first .. first + count - 1. */
 static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report) {
     const ab_contact_ops *ops = &pair->spec->responder->contact;
     const int code = ops->respond(pair->responder, &pair->points.view, first, count);
-    return code == 0 ? AB_OK : complain(pair, &pair->responder_service, "respond", code, report);
+    return code == 0 ? AB_OK : contact_complain(pair, &pair->responder_service, "respond", code, report);
 }
 
 /* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
@@ -96,15 +66,14 @@ static void keep_relative_velocity(contact_pair *pair, size_t first, size_t coun
 static ab_status round_over(contact_pair *pair, const double *history, double *change, double *largest, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
-    ab_dofs a, b;
-    pair->a->ops->dofs(pair->a, &a);
-    pair->b->ops->dofs(pair->b, &b);
+    contact_side side[2];
+    contact_sides(pair, side);
     double *relative = (double *)(uintptr_t)p->relative_velocity;
     const size_t batch = points->shared ? 1 : p->count;
     for (size_t first = 0; first < p->count; first += batch) {
         for (size_t i = first; i < first + batch; ++i) {
             double v[2];
-            relative_velocity(pair, &a, &b, false, i, v);
+            contact_relative_velocity(side, false, i, v);
             relative[i] = v[0];
             relative[p->ld + i] = v[1];
         }
@@ -113,7 +82,7 @@ static ab_status round_over(contact_pair *pair, const double *history, double *c
         else
             AB_TRY(ask_response(pair, first, batch, report));
         for (size_t i = first; i < first + batch; ++i) {
-            *change = fmax(*change, apply(pair, &a, &b, i));
+            *change = fmax(*change, apply(pair, side, i));
             *largest = fmax(*largest, hypot(p->impulse[i], p->impulse[p->ld + i]));
         }
     }
@@ -125,13 +94,12 @@ static void note_history(contact_pair *pair) {
     static const double STUCK = 1e-9; /* slip that an impulse this many times its own size would end */
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
-    ab_dofs a, b;
-    pair->a->ops->dofs(pair->a, &a);
-    pair->b->ops->dofs(pair->b, &b);
+    contact_side side[2];
+    contact_sides(pair, side);
     double *history = p->state1 + (pair->points.states - HISTORY) * ld;
     for (size_t i = 0; i < p->count; ++i) {
         double v[2];
-        relative_velocity(pair, &a, &b, false, i, v);
+        contact_relative_velocity(side, false, i, v);
         const double nx = p->normal[i], ny = p->normal[ld + i], jx = p->impulse[i], jy = p->impulse[ld + i];
         const double jt = jy * nx - jx * ny, vt = v[1] * nx - v[0] * ny;
         const bool pushed = jx != 0.0 || jy != 0.0, stuck = jt != 0.0 && fabs(vt) * p->tangential_mass[i] <= STUCK * fabs(jt);
@@ -141,50 +109,21 @@ static void note_history(contact_pair *pair) {
     }
 }
 
-static ab_status find(contact_pair *pair, const ab_step *step, ab_report *report) {
-    contact_points *points = &pair->points;
-    AB_TRY(contact_shared_nodes(pair, report));
-    if (!contact_points_reserve(points, pair->node_count, pair->node_count))
-        return ab_report_failure(report, "no memory for %zu contact points", pair->node_count);
-    ab_points *p = &points->view;
-    p->count = 0;
-    p->time = step->time;
-    p->dt = step->dt;
-    if (pair->node_count) {
-        ab_trace a = {0}, b = {0};
-        const uint32_t needs = pair->spec->finder->class_.needs;
-        ab_status of_a = AB_OK, of_b = AB_OK; /* two bodies, two threads where there are two and the work is worth it */
-#pragma omp parallel sections num_threads(2) if (pair->node_count >= NODES_PER_THREAD && omp_get_max_threads() > 1)
-        {
-#pragma omp section
-            of_a = pair->a->ops->trace(pair->a, pair->nodes_a, pair->node_count, needs, &a, report);
-#pragma omp section
-            of_b = pair->b->ops->trace(pair->b, pair->nodes_b, pair->node_count, needs, &b, report);
-        }
-        AB_TRY(of_a);
-        AB_TRY(of_b);
-        p->cell = a.cell;
-        const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
-        if (code != 0) return complain(pair, &pair->finder_service, "find", code, report);
-    }
-    return AB_OK;
-}
-
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
 static ab_status prepare(contact_pair *pair, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
-    ab_dofs a, b;
-    pair->a->ops->dofs(pair->a, &a);
-    pair->b->ops->dofs(pair->b, &b);
-    if (!contact_points_prepare(points, &a, &b)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
+    contact_side side[2];
+    contact_sides(pair, side);
+    if (!contact_points_prepare(points, side)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
     for (size_t c = 0; c < 2; ++c) {
         memset(p->impulse + c * p->ld, 0, p->count * sizeof(double));
         memset(points->applied + c * p->ld, 0, p->count * sizeof(double));
     }
+    memset(p->stiffness, 0, p->count * sizeof(double));
     for (size_t i = 0; i < p->count; ++i) {
         double v[2];
-        relative_velocity(pair, &a, &b, true, i, v);
+        contact_relative_velocity(side, true, i, v);
         points->relative_old[i] = v[0];
         points->relative_old[p->ld + i] = v[1];
     }
@@ -200,17 +139,16 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
     const ab_points *p = &points->view;
     ab_contact_totals *t = all->totals + number;
     const double friction_work = t->friction_work, contact_work = t->contact_work;
-    *t = (ab_contact_totals){.points = p->count};
-    ab_dofs a, b;
-    pair->a->ops->dofs(pair->a, &a);
-    pair->b->ops->dofs(pair->b, &b);
+    *t = (ab_contact_totals){.points = p->count, .failures = pair->failures};
+    contact_side side[2];
+    contact_sides(pair, side);
     double friction = 0.0, loss = 0.0, tangential = 0.0;
     for (size_t i = 0; i < p->count; ++i) {
         const double jx = p->impulse[i], jy = p->impulse[p->ld + i], nx = p->normal[i], ny = p->normal[p->ld + i];
         if (p->gap[i] < 0.0) t->penetration = fmax(t->penetration, -p->gap[i]);
         if (jx == 0.0 && jy == 0.0) continue;
         double v[2];
-        relative_velocity(pair, &a, &b, false, i, v);
+        contact_relative_velocity(side, false, i, v);
         const double mx = 0.5 * (v[0] + points->relative_old[i]), my = 0.5 * (v[1] + points->relative_old[p->ld + i]);
         const double jn = jx * nx + jy * ny, jt = jy * nx - jx * ny, slip = v[1] * nx - v[0] * ny;
         friction += jt * slip;
@@ -227,39 +165,41 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
     for (int c = 0; c < 2; ++c) t->force[c] = t->impulse[c] / step->dt;
     t->friction_work = friction_work + friction;
     t->contact_work = contact_work + loss;
-    for (int side = 0; side < 2; ++side) {
-        all->friction[pair->spec->body[side]] += 0.5 * friction;
-        all->contact[pair->spec->body[side]] += 0.5 * loss;
+    for (int k = 0; k < 2; ++k) {
+        all->friction[pair->spec->body[k]] += 0.5 * friction;
+        all->contact[pair->spec->body[k]] += 0.5 * loss;
     }
 }
 
-/* Contact keeps bodies from getting deeper into each other; it does not push apart what the scene has drawn one inside the other. Seen by points that
- * reach into the other body, and by nodes around which both together take more room than there is. */
-static void warn_of_overlap(const contact_all *all, const contact_pair *pair, ab_report *report) {
-    static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume */
-    const double h = all->scene->grid_cell;
-    double deepest = 0.0, most = 0.0;
-    const ab_points *p = &pair->points.view;
-    for (size_t i = 0; i < p->count; ++i) deepest = fmax(deepest, -p->gap[i]);
-    ab_node_tiles a, b;
-    pair->a->ops->node_tiles(pair->a, &a);
-    pair->b->ops->node_tiles(pair->b, &b);
-    const double density_a = all->scene->materials[pair->a->spec->material].density,
-                 density_b = all->scene->materials[pair->b->spec->material].density;
-    for (size_t k = 0; k < pair->node_count; ++k)
-        most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
-    if (deepest <= DEEP * h && most <= CROWDED * h * h) return;
-    ab_report_warning(report, pair->spec->mark,
-                      "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side",
-                      pair->a->spec->name, pair->b->spec->name);
+/* A spring of stiffness k between masses whose effective mass is m swings with sqrt(k/m): stable below dt = 2 sqrt(m/k). */
+static void note_springs(contact_all *all) {
+    all->critical_dt = INFINITY;
+    for (size_t k = 0; k < all->count; ++k) {
+        const contact_pair *pair = all->pairs + k;
+        const ab_points *p = &pair->points.view;
+        for (size_t i = 0; i < p->count; ++i) {
+            if (!(p->stiffness[i] > 0.0 && p->normal_mass[i] > 0.0)) continue;
+            const double dt = 2.0 * sqrt(p->normal_mass[i] / p->stiffness[i]);
+            if (!(dt < all->critical_dt)) continue;
+            all->critical_dt = dt;
+            snprintf(all->limit, sizeof all->limit, "spring of contact between '%.80s' and '%.80s', %.3g N/m on %.3g kg",
+                     pair->a->spec->name, pair->b->spec->name, p->stiffness[i], p->normal_mass[i]);
+        }
+    }
+}
+
+static double critical_dt(const ab_interaction *face, const char **limit) {
+    const contact_all *all = (const contact_all *)face;
+    *limit = all->limit;
+    return all->critical_dt;
 }
 
 static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report) {
     contact_all *all = (contact_all *)face;
     if (all->found_step != step->number) {
         for (size_t k = 0; k < all->count; ++k) {
-            AB_TRY(find(all->pairs + k, step, report));
-            if (step->number == 0) warn_of_overlap(all, all->pairs + k, report);
+            AB_TRY(contact_find(all->pairs + k, step, report));
+            if (step->number == 0) contact_warn_of_overlap(all->scene, all->pairs + k, report);
         }
         all->found_step = step->number;
     }
@@ -284,7 +224,10 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
             }
         if (change <= STANDSTILL * largest) break;
     }
-    if (stage == AB_STAGE_DYNAMIC) all->answered_step = step->number;
+    if (stage == AB_STAGE_DYNAMIC) {
+        all->answered_step = step->number;
+        note_springs(all);
+    }
     return AB_OK;
 }
 
@@ -312,6 +255,7 @@ static void destroy(ab_interaction *face) {
         if (pair->finder && pair->spec->finder->class_.destroy) pair->spec->finder->class_.destroy(pair->finder);
         if (pair->responder && pair->spec->responder->class_.destroy) pair->spec->responder->class_.destroy(pair->responder);
         contact_points_destroy(&pair->points);
+        contact_broad_destroy(pair->broad);
         free(pair->tiles), free(pair->nodes_a), free(pair->nodes_b);
     }
     free(all->pairs), free(all->totals), free(all->friction), free(all->contact), free(all);
@@ -340,9 +284,10 @@ static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, 
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
-    all->face = (ab_interaction){destroy, solve, settle, totals, book_body, NULL};
+    all->face = (ab_interaction){destroy, solve, settle, totals, book_body, critical_dt};
     all->scene = scene;
     all->found_step = all->answered_step = -1;
+    all->critical_dt = INFINITY;
     all->pairs = calloc(scene->contact_count + 1, sizeof *all->pairs);
     all->totals = calloc(scene->contact_count + 1, sizeof *all->totals);
     all->friction = calloc(scene->body_count + 1, sizeof *all->friction);
@@ -358,10 +303,14 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         all->count = k + 1;
         pair->points.view.struct_size = sizeof(ab_points);
         pair->points.view.dimension = 2;
+        pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
+        pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)
             pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
-        status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
+        status = contact_can_find(pair, report);
+        if (status == AB_OK && pair->points.surfaces) status = contact_broad_create(scene, pair, report);
+        if (status == AB_OK) status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
         if (status == AB_OK)
             status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);
     }

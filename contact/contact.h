@@ -1,5 +1,5 @@
-/* contact.h: the host's half of contact: which nodes bodies share, the plugins' find and respond, and the loop that applies impulses until they stand
- * still. Inside contact/ and for main. */
+/* contact.h: the host's half of contact: which nodes bodies share and which faces their points are near, the plugins' find and respond, and the loop that
+ * applies impulses until they stand still. Inside contact/ and for main. */
 #ifndef AB_CONTACT_H
 #define AB_CONTACT_H
 
@@ -20,11 +20,15 @@ typedef struct contact_points {
     size_t stencil_a, stencil_b; /* capacity of the stencils */
     size_t states;               /* rows of history: the response's, then the loop's own HISTORY rows */
     bool shared;                 /* some dof serves more than one point: one point after the other, and again until impulses stand still */
-    bool held;                   /* a side holds one direction of some dof: normal and tangential answers act on each other */
-    uint64_t *old_key;           /* of the last step, ascending, with their states: history */
+    bool held;         /* of some point: normal and tangential answers act on each other (one direction of a dof is held, a body turns) */
+    bool surfaces;     /* points come from surfaces, not from shared nodes */
+    bool distances;    /* the response needs them */
+    uint64_t *old_key; /* of the last step, ascending, with their states: history */
     double *old_state;
     size_t old_count, old_capacity;
 } contact_points;
+
+typedef struct contact_broad contact_broad; /* broad_phase.c */
 
 typedef struct contact_pair {
     const ab_contact_spec *spec;
@@ -36,17 +40,58 @@ typedef struct contact_pair {
     size_t tile_count, tile_capacity;
     uint32_t *nodes_a, *nodes_b; /* nodes both bodies have mass at */
     size_t node_count, node_capacity;
+    contact_broad *broad; /* NULL unless the finder needs surfaces */
     contact_points points;
-    ab_contact_totals totals;
+    size_t failures; /* of the finder, so far */
 } contact_pair;
+
+/* sides.c: one side of a pair's contact points, on the dofs of its body */
+typedef struct contact_side {
+    ab_dofs dofs;
+    const ab_points *points;
+    const size_t *start;
+    const uint32_t *dof;
+    const double *weight;
+    double sign; /* of its velocity in the relative one: a 1, b -1. The impulse on it is -sign times the point's */
+} contact_side;
+
+void contact_sides(const contact_pair *, contact_side side[2]);
+/* Velocity of a relative to b at point i, m/s; old: at the start of the step. */
+void contact_relative_velocity(const contact_side side[2], bool old, size_t i, double v[2]);
+/* Changes the velocities of both sides by impulse j on b, N s. */
+void contact_push(const contact_side side[2], size_t i, const double j[2]);
+/* Inverse effective mass along d, 1/kg. *held becomes true where some dof has one direction held. */
+double contact_inverse_mass(const contact_side side[2], size_t i, const double d[2], bool *held);
+/* How a unit impulse along n changes the velocity across it, 1/kg: what makes answers along and across act on each other. turns: only what comes from bodies
+ * that turn. */
+double contact_coupling(const contact_side side[2], size_t i, const double n[2], bool turns);
+/* True where nothing that an impulse along component c does moves either side. */
+bool contact_all_held(const contact_side side[2], size_t i, size_t c);
 
 /* shared_nodes.c */
 ab_status contact_shared_nodes(contact_pair *, ab_report *);
 
+/* broad_phase.c */
+ab_status contact_broad_create(const ab_scene *, contact_pair *, ab_report *);
+void contact_broad_destroy(contact_broad *);
+/* Surfaces of both bodies, each point with the other body's faces near it. They stay the domains' and the broad phase's, until the next call. */
+ab_status contact_surfaces(contact_pair *, double dt, ab_surface *a, ab_surface *b, ab_report *);
+double contact_broad_cell(const contact_broad *);  /* m; the grid's, or without one the mean length of a face. Known after the first call */
+double contact_broad_speed(const contact_broad *); /* m/s, largest of a place on one surface against one on the other */
+size_t contact_broad_visits(const contact_broad *); /* pairs of a point and a face that were looked at in the last call */
+size_t contact_broad_builds(const contact_broad *); /* how often regions and buckets were made so far */
+
+/* find.c */
+ab_status contact_can_find(const contact_pair *, ab_report *); /* the bodies have what the finder needs */
+ab_status contact_find(contact_pair *, const ab_step *, ab_report *);
+/* Contact keeps bodies from getting deeper into each other and does not push apart what is drawn one inside the other: says so, after the first find. */
+void contact_warn_of_overlap(const ab_scene *, const contact_pair *, ab_report *);
+ab_status contact_complain(const contact_pair *, const ab_service *, const char *what, int code, ab_report *);
+
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */
 void contact_points_destroy(contact_points *);
-bool contact_points_prepare(contact_points *, const ab_dofs *a, const ab_dofs *b); /* effective masses, history; false: no memory */
+bool contact_points_prepare(contact_points *, const contact_side side[2]); /* effective masses, history; false: no memory */
 void contact_points_remember(contact_points *);
 
 #endif

@@ -24,11 +24,12 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
                *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
         if (!resize(&v->key, 1, 1, old, n, sizeof *v->key) || !resize(&v->normal, 2, 2, old, n, sizeof(double)) ||
             !resize(&v->position, 2, 2, old, n, sizeof(double)) || !resize(&v->gap, 1, 1, old, n, sizeof(double)) ||
-            !resize(&v->area, 1, 1, old, n, sizeof(double)) || !resize(&relative, 2, 2, old, n, sizeof(double)) ||
-            !resize(&mn, 1, 1, old, n, sizeof(double)) || !resize(&mt, 1, 1, old, n, sizeof(double)) ||
-            !resize(&v->impulse, 2, 2, old, n, sizeof(double)) || !resize(&state0, s, s, old, n, sizeof(double)) ||
-            !resize(&v->state1, s, s, old, n, sizeof(double)) || !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) ||
-            !resize(&points->applied, 2, 2, old, n, sizeof(double)) ||
+            !resize(&v->area, 1, 1, old, n, sizeof(double)) || !resize(&v->stiffness, 1, 1, old, n, sizeof(double)) ||
+            (points->distances && !resize(&v->distance, 1, 1, old, n, sizeof(double))) ||
+            !resize(&relative, 2, 2, old, n, sizeof(double)) || !resize(&mn, 1, 1, old, n, sizeof(double)) ||
+            !resize(&mt, 1, 1, old, n, sizeof(double)) || !resize(&v->impulse, 2, 2, old, n, sizeof(double)) ||
+            !resize(&state0, s, s, old, n, sizeof(double)) || !resize(&v->state1, s, s, old, n, sizeof(double)) ||
+            !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) || !resize(&points->applied, 2, 2, old, n, sizeof(double)) ||
             !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
             !resize(&v->b_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)))
             return false;
@@ -53,44 +54,19 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
 
 void contact_points_destroy(contact_points *points) {
     ab_points *v = &points->view;
-    free(v->key), free(v->normal), free(v->position), free(v->gap), free(v->area), free((void *)(uintptr_t)v->relative_velocity),
-        free((void *)(uintptr_t)v->normal_mass);
+    free(v->key), free(v->normal), free(v->position), free(v->gap), free(v->area), free(v->distance), free(v->stiffness),
+        free((void *)(uintptr_t)v->relative_velocity), free((void *)(uintptr_t)v->normal_mass);
     free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1),
         free(points->relative_old);
     free(points->applied), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
 }
 
-/* Inverse effective mass in direction d: sum w^2 d.M^-1.d over both sides. */
-static double inverse_mass(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, double dx, double dy, bool *held) {
-    double sum = 0.0;
-    for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s) {
-        const double *m = a->inverse_mass + (size_t)v->a_dof[s] * a->mass_stride, w = v->a_weight[s];
-        sum += w * w * (dx * dx * m[0] + dy * dy * m[1]);
-        if (m[0] != m[1]) *held = true;
-    }
-    for (size_t s = v->b_start[i]; s < v->b_start[i + 1]; ++s) {
-        const double *m = b->inverse_mass + (size_t)v->b_dof[s] * b->mass_stride, w = v->b_weight[s];
-        sum += w * w * (dx * dx * m[0] + dy * dy * m[1]);
-        if (m[0] != m[1]) *held = true;
-    }
-    return sum;
-}
-
-/* True where component c of every dof of point i is held, on both sides. */
-static bool all_held(const ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b, size_t c) {
-    for (size_t s = v->a_start[i]; s < v->a_start[i + 1]; ++s)
-        if (a->inverse_mass[(size_t)v->a_dof[s] * a->mass_stride + c] != 0.0) return false;
-    for (size_t s = v->b_start[i]; s < v->b_start[i + 1]; ++s)
-        if (b->inverse_mass[(size_t)v->b_dof[s] * b->mass_stride + c] != 0.0) return false;
-    return true;
-}
-
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
  * degrees: the normal's). A normal that is oblique by however little would let normal and tangential answers work on the same freedom, each as if it were
  * alone, and the loop would swing for ever. */
-static void fit_normal_to_sides(ab_points *v, size_t i, const ab_dofs *a, const ab_dofs *b) {
-    const bool x = all_held(v, i, a, b, 0), y = all_held(v, i, a, b, 1);
+static void fit_normal_to_sides(ab_points *v, size_t i, const contact_side side[2]) {
+    const bool x = contact_all_held(side, i, 0), y = contact_all_held(side, i, 1);
     if (x == y) return;
     double *held = v->normal + (x ? 0 : v->ld) + i, *left = v->normal + (x ? v->ld : 0) + i;
     const bool normal = fabs(*left) >= 0.5;
@@ -170,16 +146,27 @@ void contact_points_remember(contact_points *points) {
     free(list);
 }
 
-bool contact_points_prepare(contact_points *points, const ab_dofs *a, const ab_dofs *b) {
+/* Where an impulse along the normal changes the velocity across it, the two halves of an answer, each made as if it were alone, overshoot together: by up to
+ * twice where they work on one and the same freedom (a body on a pivot, a node that a side guides along a slope), and the loop would swing for ever. Masses that
+ * are smaller by 1 + c, c = |K_nt|/sqrt(K_nn K_tt), make the answers a damped iteration that never overshoots and ends at the same impulses. */
+static double share_of_mass(const contact_side side[2], size_t i, const double n[2], double in, double it, bool turns, bool *held) {
+    const double coupling = contact_coupling(side, i, n, turns);
+    if (coupling == 0.0 || !(in > 0.0) || !(it > 0.0)) return 1.0;
+    *held = true;
+    return 1.0 / (1.0 + fmin(1.0, fabs(coupling) / sqrt(in * it)));
+}
+
+bool contact_points_prepare(contact_points *points, const contact_side side[2]) {
     ab_points *v = &points->view;
     double *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
     bool held = false;
     for (size_t i = 0; i < v->count; ++i) {
-        fit_normal_to_sides(v, i, a, b);
-        const double nx = v->normal[i], ny = v->normal[v->ld + i];
-        const double in = inverse_mass(v, i, a, b, nx, ny, &held), it = inverse_mass(v, i, a, b, -ny, nx, &held);
-        mn[i] = in > 0.0 ? 1.0 / in : 0.0;
-        mt[i] = it > 0.0 ? 1.0 / it : 0.0;
+        if (!points->surfaces) fit_normal_to_sides(v, i, side);
+        const double n[2] = {v->normal[i], v->normal[v->ld + i]}, t[2] = {-n[1], n[0]};
+        const double in = contact_inverse_mass(side, i, n, &held), it = contact_inverse_mass(side, i, t, &held);
+        const double share = share_of_mass(side, i, n, in, it, !points->surfaces, &held);
+        mn[i] = in > 0.0 ? share / in : 0.0;
+        mt[i] = it > 0.0 ? share / it : 0.0;
     }
     const int shared_a = shares_dofs(v->a_start, v->a_dof, v->count), shared_b = shares_dofs(v->b_start, v->b_dof, v->count);
     if (shared_a < 0 || shared_b < 0) return false;

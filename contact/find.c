@@ -1,0 +1,120 @@
+/* find.c: asks the bodies of a pair for what its finder needs, nodes they share or surfaces, and the finder for contact points. */
+#include <math.h>
+#include <omp.h>
+
+#include "contact/contact.h"
+
+enum { NODES_PER_THREAD = 32 };
+
+static const uint32_t NODE_NEEDS = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS;
+
+ab_status contact_complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
+    return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name,
+                             what, code, service->message[0] ? "the reason: " : "no reason", service->message);
+}
+
+ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
+    const ab_loaded_class *finder = pair->spec->finder;
+    const ab_domain_ops *a = pair->a->ops, *b = pair->b->ops;
+    for (int side = 0; side < 2; ++side) {
+        const ab_domain *body = side ? pair->b : pair->a;
+        if ((finder->class_.needs & NODE_NEEDS) && !(body->ops->node_tiles && body->ops->trace))
+            return ab_report_error(
+                report, pair->spec->mark,
+                "contact by '%s' looks at nodes of the grid, and body '%s' (%s) is not seen there; use another algorithm, "
+                "such as point-to-segment",
+                finder->class_.name, body->spec->name, body->ops->method);
+    }
+    if ((finder->class_.needs & AB_NEED_SURFACE) && !((a->faces && b->surface_points) || (b->faces && a->surface_points)))
+        return ab_report_error(
+            report, pair->spec->mark,
+            "contact by '%s' needs a body with faces (finite-elements, rigid), and neither '%s' (%s) nor '%s' (%s) has any; "
+            "use another algorithm, such as multi-velocity",
+            finder->class_.name, pair->a->spec->name, a->method, pair->b->spec->name, b->method);
+    return AB_OK;
+}
+
+static double modulus(const ab_domain *body) { return body->ops->modulus ? body->ops->modulus(body) : INFINITY; }
+
+static ab_status trace_nodes(contact_pair *pair, uint32_t needs, ab_trace *a, ab_trace *b, ab_report *report) {
+    AB_TRY(contact_shared_nodes(pair, report));
+    if (pair->node_count == 0) return AB_OK;
+    ab_status of_a = AB_OK, of_b = AB_OK; /* two bodies, two threads where there are two and the work is worth it */
+#pragma omp parallel sections num_threads(2) if (pair->node_count >= NODES_PER_THREAD && omp_get_max_threads() > 1)
+    {
+#pragma omp section
+        of_a = pair->a->ops->trace(pair->a, pair->nodes_a, pair->node_count, needs, a, report);
+#pragma omp section
+        of_b = pair->b->ops->trace(pair->b, pair->nodes_b, pair->node_count, needs, b, report);
+    }
+    AB_TRY(of_a);
+    return of_b;
+}
+
+/* What a trace says of a body without nodes. */
+static void describe(ab_trace *trace, const ab_domain *body, double cell) {
+    if (trace->struct_size) return;
+    *trace = (ab_trace){.struct_size = sizeof *trace, .dimension = 2, .body = body->spec->name, .stiffness = modulus(body), .cell = cell};
+}
+
+ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *report) {
+    contact_points *points = &pair->points;
+    ab_points *p = &points->view;
+    const uint32_t needs = pair->spec->finder->class_.needs;
+    ab_trace a = {0}, b = {0};
+    ab_surface surface_a = {0}, surface_b = {0};
+    p->count = 0;
+    pair->node_count = 0;
+    size_t stencil = 0;
+    if (needs & NODE_NEEDS) {
+        AB_TRY(trace_nodes(pair, needs, &a, &b, report));
+        if (a.stencil_start)
+            stencil = a.stencil_start[a.count] > b.stencil_start[b.count] ? a.stencil_start[a.count] : b.stencil_start[b.count];
+    }
+    if (!contact_points_reserve(points, pair->node_count, stencil))
+        return ab_report_failure(report, "no memory for %zu contact points", pair->node_count);
+    p->time = step->time;
+    p->dt = step->dt;
+    p->cell = a.cell;
+    p->failures = 0;
+    p->speed = 0.0;
+    p->modulus = fmin(modulus(pair->a), modulus(pair->b));
+    p->a_start[0] = p->b_start[0] = 0;
+    if (needs & AB_NEED_SURFACE) {
+        AB_TRY(contact_surfaces(pair, step->dt, &surface_a, &surface_b, report));
+        p->cell = contact_broad_cell(pair->broad);
+        p->speed = contact_broad_speed(pair->broad);
+        describe(&a, pair->a, p->cell);
+        describe(&b, pair->b, p->cell);
+        a.surface = &surface_a;
+        b.surface = &surface_b;
+    } else if (pair->node_count == 0) {
+        return AB_OK;
+    }
+    const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
+    if (code != 0) return contact_complain(pair, &pair->finder_service, "find", code, report);
+    pair->failures += p->failures;
+    return AB_OK;
+}
+
+/* Seen by points that reach into the other body, and by nodes around which both together take more room than there is. */
+void contact_warn_of_overlap(const ab_scene *scene, const contact_pair *pair, ab_report *report) {
+    static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume */
+    const ab_points *p = &pair->points.view;
+    const double h = p->cell;
+    double deepest = 0.0, most = 0.0;
+    for (size_t i = 0; i < p->count; ++i) deepest = fmax(deepest, -p->gap[i]);
+    const size_t material_a = pair->a->spec->material, material_b = pair->b->spec->material;
+    if (pair->node_count && material_a != SIZE_MAX && material_b != SIZE_MAX) { /* a rigid body may have no density */
+        ab_node_tiles a, b;
+        pair->a->ops->node_tiles(pair->a, &a);
+        pair->b->ops->node_tiles(pair->b, &b);
+        const double density_a = scene->materials[material_a].density, density_b = scene->materials[material_b].density;
+        for (size_t k = 0; k < pair->node_count; ++k)
+            most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
+    }
+    if (deepest <= DEEP * h && most <= CROWDED * h * h) return;
+    ab_report_warning(report, pair->spec->mark,
+                      "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side",
+                      pair->a->spec->name, pair->b->spec->name);
+}

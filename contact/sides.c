@@ -1,0 +1,101 @@
+/* sides.c: what a contact point does with the degrees of freedom of the two bodies it lies between, written once for both sides and for every method: velocity,
+ * impulse, effective mass. A body that turns as a whole has velocity v + spin x r, r from its centre to the point, and an impulse j changes its spin by r x j over
+ * its moment of inertia. */
+#include "contact/contact.h"
+
+void contact_sides(const contact_pair *pair, contact_side side[2]) {
+    const ab_points *p = &pair->points.view;
+    side[0] = (contact_side){.points = p, .start = p->a_start, .dof = p->a_dof, .weight = p->a_weight, .sign = 1.0};
+    side[1] = (contact_side){.points = p, .start = p->b_start, .dof = p->b_dof, .weight = p->b_weight, .sign = -1.0};
+    pair->a->ops->dofs(pair->a, &side[0].dofs);
+    pair->b->ops->dofs(pair->b, &side[1].dofs);
+}
+
+static void arm(const contact_side *s, size_t i, double r[2]) {
+    r[0] = s->points->position[i] - s->dofs.centre[0];
+    r[1] = s->points->position[s->points->ld + i] - s->dofs.centre[1];
+}
+
+void contact_relative_velocity(const contact_side side[2], bool old, size_t i, double v[2]) {
+    v[0] = v[1] = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const contact_side *s = side + k;
+        const double *velocity = old ? s->dofs.velocity_old : s->dofs.velocity;
+        const size_t stride = old ? s->dofs.old_stride : s->dofs.velocity_stride;
+        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
+            const double *u = velocity + (size_t)s->dof[e] * stride, w = s->sign * s->weight[e];
+            v[0] += w * u[0];
+            v[1] += w * u[1];
+        }
+        if (s->dofs.spin) {
+            const double spin = s->sign * (old ? *s->dofs.spin_old : *s->dofs.spin);
+            double r[2];
+            arm(s, i, r);
+            v[0] -= spin * r[1];
+            v[1] += spin * r[0];
+        }
+    }
+}
+
+void contact_push(const contact_side side[2], size_t i, const double j[2]) {
+    for (int k = 0; k < 2; ++k) {
+        const contact_side *s = side + k;
+        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
+            const size_t dof = s->dof[e];
+            for (size_t c = 0; c < 2; ++c)
+                s->dofs.velocity[dof * s->dofs.velocity_stride + c] -=
+                    s->sign * s->weight[e] * j[c] * s->dofs.inverse_mass[dof * s->dofs.mass_stride + c];
+        }
+        if (s->dofs.spin) {
+            double r[2];
+            arm(s, i, r);
+            *s->dofs.spin -= s->sign * (r[0] * j[1] - r[1] * j[0]) * s->dofs.inverse_inertia;
+        }
+    }
+}
+
+double contact_inverse_mass(const contact_side side[2], size_t i, const double d[2], bool *held) {
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const contact_side *s = side + k;
+        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
+            const double *m = s->dofs.inverse_mass + (size_t)s->dof[e] * s->dofs.mass_stride, w = s->weight[e];
+            sum += w * w * (d[0] * d[0] * m[0] + d[1] * d[1] * m[1]);
+            if (m[0] != m[1]) *held = true;
+        }
+        if (s->dofs.spin) {
+            double r[2];
+            arm(s, i, r);
+            const double turned = r[0] * d[1] - r[1] * d[0];
+            sum += turned * turned * s->dofs.inverse_inertia;
+        }
+    }
+    return sum;
+}
+
+double contact_coupling(const contact_side side[2], size_t i, const double n[2], bool turns) {
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const contact_side *s = side + k;
+        for (size_t e = s->start[i]; !turns && e < s->start[i + 1]; ++e) {
+            const double *m = s->dofs.inverse_mass + (size_t)s->dof[e] * s->dofs.mass_stride, w = s->weight[e];
+            sum += w * w * n[0] * n[1] * (m[1] - m[0]);
+        }
+        if (s->dofs.spin) {
+            double r[2];
+            arm(s, i, r);
+            sum += (r[0] * n[1] - r[1] * n[0]) * (r[0] * n[0] + r[1] * n[1]) * s->dofs.inverse_inertia;
+        }
+    }
+    return sum;
+}
+
+bool contact_all_held(const contact_side side[2], size_t i, size_t c) {
+    for (int k = 0; k < 2; ++k) {
+        const contact_side *s = side + k;
+        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e)
+            if (s->dofs.inverse_mass[(size_t)s->dof[e] * s->dofs.mass_stride + c] != 0.0) return false;
+        if (s->dofs.spin && s->dofs.inverse_inertia != 0.0) return false;
+    }
+    return true;
+}
