@@ -5,6 +5,6 @@
 #include "mpm/body.h"
 
 int main(int argc, char **argv) {
-    static const ab_method methods[] = {{"material-points", mpm_create}, {"finite-elements", fem_create}};
+    static const ab_method methods[] = {{"material-points", mpm_create}, {"finite-elements", fem_create}, {"rigid", rigid_create}};
     return ab_command_main(argc, argv, methods, sizeof methods / sizeof *methods, contact_create);
 }
