@@ -1,4 +1,4 @@
-/* fake_registry.h: a registry of three classes for tests of the scene reader, so that they need no plugin files. Include in one source only. */
+/* fake_registry.h: a registry of a few classes for tests of the scene reader, so that they need no plugin files. Include in one source only. */
 #ifndef AB_FAKE_REGISTRY_H
 #define AB_FAKE_REGISTRY_H
 
@@ -32,7 +32,8 @@ static const ab_param fake_response_params[] = {
 static const ab_loaded_class fake_classes[] = {
     {.class_ = {.kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN, .nparam = 5, .nstate = 2, .name = "linear-elastic", .param = fake_elastic_params, .state = fake_elastic_states}},
     {.class_ = {.kind = AB_MATERIAL, .spaces = AB_SPACE_3D, .name = "only-3d"}},
-    {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS, .nparam = 3, .name = "multi-velocity", .param = fake_finder_params}},
+    {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS, .needs = AB_NEED_SHARED_NODES, .nparam = 3, .name = "multi-velocity", .param = fake_finder_params}},
+    {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS, .needs = AB_NEED_SURFACE, .name = "faces"}},
     {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS | AB_GIVE_IMPULSE, .nparam = 2, .name = "both", .param = fake_response_params}},
     {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_IMPULSE, .nparam = 2, .name = "coulomb", .param = fake_response_params}},
 };
