@@ -23,6 +23,7 @@ typedef struct fem_block {                                 /* eight elements in 
     double stress[FEM_GAUSS][4][8];                     /* in: of strain, at the start; of force, at the end; Pa */
     double force[2 * FEM_NODES][8];                     /* out of force: internal force on the nodes (to be subtracted), N */
     double control_work[8];                             /* out of strain: work of hourglass forces in this step, J */
+    double control_first[8];                            /* the same of those at its start alone (q4r; the others leave it) */
     double jacobian
         [8]; /* out of strain: smallest det J over Gauss points and corners at the end, over that of a square of the same area; <= 0: inverted */
 } fem_block;
