@@ -45,11 +45,14 @@ void contact_push(const contact_side side[2], size_t i, const double j[2]) {
             for (size_t c = 0; c < 2; ++c)
                 s->dofs.velocity[dof * s->dofs.velocity_stride + c] -=
                     s->sign * s->weight[e] * j[c] * s->dofs.inverse_mass[dof * s->dofs.mass_stride + c];
+            for (size_t c = 0; s->dofs.impulse && c < 2; ++c) s->dofs.impulse[2 * dof + c] -= s->sign * s->weight[e] * j[c];
         }
         if (s->dofs.spin) {
             double r[2];
             arm(s, i, r);
-            *s->dofs.spin -= s->sign * (r[0] * j[1] - r[1] * j[0]) * s->dofs.inverse_inertia;
+            const double moment = -s->sign * (r[0] * j[1] - r[1] * j[0]);
+            *s->dofs.spin += moment * s->dofs.inverse_inertia;
+            if (s->dofs.impulse) s->dofs.impulse[2] += moment;
         }
     }
 }

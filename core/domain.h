@@ -27,7 +27,7 @@ typedef struct ab_energy {
     double contact;   /* lost (or, negative, given back) by normal impulses; half to each body */
     double boundary;  /* taken away by sides of the grid and boundary plugins */
     double damping;   /* taken away by local damping */
-    double external;  /* work done on the body by tractions */
+    double external;  /* work done on the body by loads, and by the forces that move what is prescribed */
     double outflow;   /* carried out by points that left through an outflow side */
 } ab_energy;
 

@@ -11,8 +11,8 @@
         {"energy.potential", "J", "potential energy in gravity, from the start"},                                                          \
         {"energy.plastic", "J", "dissipated in the material so far"}, {"energy.friction", "J", "dissipated by slip in contact so far"},    \
         {"energy.contact", "J", "lost by normal impulses in contact so far"},                                                              \
-        {"energy.boundary", "J", "taken away by sides of the grid, fixed and prescribed nodes and motions so far"},                        \
-        {"energy.damping", "J", "taken away by local damping so far"}, {"energy.external", "J", "work of loads so far"},                   \
+        {"energy.boundary", "J", "taken away by sides of the grid so far"}, {"energy.damping", "J", "taken away by local damping so far"}, \
+        {"energy.external", "J", "work of loads, and of the forces that move prescribed nodes and motions, so far"},                       \
         {"energy.outflow", "J", "carried out by points that left so far"},                                                                 \
         {"energy.remainder", "J", "what the discretisation made (+) or lost (-) so far"}, {                                                \
         "energy.total", "J", "kinetic + strain + potential"                                                                                \
@@ -107,9 +107,9 @@ static const ab_word columns[] = {
     {"plastic", "J", "dissipated in the material so far"},
     {"friction", "J", "dissipated by slip in contact so far"},
     {"contact", "J", "lost by normal impulses in contact so far"},
-    {"boundary", "J", "taken away by sides of the grid, fixed and prescribed nodes and motions so far"},
+    {"boundary", "J", "taken away by sides of the grid so far"},
     {"damping", "J", "taken away by local damping so far"},
-    {"external", "J", "work of loads so far"},
+    {"external", "J", "work of loads, and of the forces that move prescribed nodes and motions, so far"},
     {"outflow", "J", "carried out by points that left; only where a side of the grid says outflow"},
     {"remainder", "J", "what the discretisation made (+) or lost (-) so far"},
 };

@@ -231,10 +231,10 @@ static void book(rigid_body *body, const ab_step *step) {
     double *reaction = body->reaction;
     for (int c = 0; c < 2; ++c) {
         reaction[c] = body->held[c] ? body->mass * change[c] / dt - body->impulse[c] / dt - body->force[c] : 0.0;
-        body->energy.boundary -= dt * reaction[c] * mean[c];
+        body->energy.external += dt * reaction[c] * mean[c];
     }
     reaction[2] = body->held_spin ? (body->inertia * (body->spin - body->spin_old) - body->impulse[2]) / dt - body->force[2] : 0.0;
-    body->energy.boundary -= dt * reaction[2] * spin;
+    body->energy.external += dt * reaction[2] * spin;
 }
 
 /* A hinge also turns the momentum of the body with it, which is no impulse of the step; it works where the hinge moves. */
@@ -244,7 +244,7 @@ static void book_turning(rigid_body *body, const ab_step *step, const double aft
         const double turned = after[!c] - body->offset[!c];
         body->reaction[c] += body->mass * (c ? body->spin : -body->spin) * turned / step->dt;
     }
-    body->energy.boundary -= kinetic(body, after) - before;
+    body->energy.external += kinetic(body, after) - before;
 }
 
 ab_status rigid_finish(ab_domain *domain, const ab_step *step, ab_report *report) {
