@@ -66,7 +66,7 @@ typedef struct fem_outer { /* the outer faces, for contact */
     double *vertex_place; /* rows of faces->node_count */
     double *area;         /* by place */
     uint64_t *key;        /* of the points last asked for */
-    uint32_t *point_dof;
+    uint32_t *point_dof, *point_vertex;
     double *point_place, *point_area, *point_extent;
 } fem_outer;
 

@@ -18,13 +18,14 @@ ab_status fem_outer_create(fem_body *body, fem_faces *faces, ab_report *report) 
         o->area = fem_take(body, n, sizeof *o->area);
         o->key = fem_take(body, n, sizeof *o->key);
         o->point_dof = fem_take(body, n, sizeof *o->point_dof);
+        o->point_vertex = fem_take(body, n, sizeof *o->point_vertex);
         o->point_place = fem_take(body, 2 * n, sizeof *o->point_place);
         o->point_area = fem_take(body, n, sizeof *o->point_area);
         o->point_extent = fem_take(body, 3 * n, sizeof *o->point_extent);
     } else
         fem_faces_destroy(faces);
     if (!o || !o->place || !o->start || !o->weight || !o->vertex || !o->vertex_place || !o->area || !o->key || !o->point_dof ||
-        !o->point_place || !o->point_area || !o->point_extent)
+        !o->point_vertex || !o->point_place || !o->point_area || !o->point_extent)
         return ab_report_failure(report, "body '%s': no memory for %zu outer faces", body->domain.spec->name, faces->count);
     for (size_t i = 0; i < body->nodes; ++i) o->place[i] = FEM_NONE;
     for (size_t k = 0; k < n; ++k) {
@@ -110,6 +111,7 @@ ab_status fem_surface_points(ab_domain *domain, const ab_region *region, ab_surf
         if (!in_region(region, x)) continue;
         o->key[count] = (uint64_t)node + 1;
         o->point_dof[count] = node;
+        o->point_vertex[count] = (uint32_t)k;
         o->point_place[count] = x[0];
         o->point_place[ld + count] = x[1];
         o->point_area[count++] = o->area[k];
@@ -120,6 +122,7 @@ ab_status fem_surface_points(ab_domain *domain, const ab_region *region, ab_surf
     surface->point_extent = o->point_extent; /* zeros */
     surface->point_area = o->point_area;
     surface->point_key = o->key;
+    surface->point_vertex = o->point_vertex;
     surface->point_start = o->start;
     surface->point_dof = o->point_dof;
     surface->point_weight = o->weight;
