@@ -44,7 +44,8 @@ void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, con
     for (int q = 0; q < body->element->gauss; ++q, at += 8) {
         double *point = fem_gauss_rows(body, number, q);
         const v8 hxx = v8_load(block->h[q][0]), hxy = v8_load(block->h[q][1]), hyx = v8_load(block->h[q][2]), hyy = v8_load(block->h[q][3]);
-        const ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
+        ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
+        ab_turn_increment(&increment);
         v8_store(batch->strain[0] + at, increment.xx);
         v8_store(batch->strain[1] + at, increment.yy);
         v8_store(batch->strain[3] + at, increment.xy);
