@@ -25,7 +25,15 @@
 static const char library_name[] = VERSION_TEXT(GMSH_API_VERSION_MAJOR, GMSH_API_VERSION_MINOR); /* its soname: the header's own version */
 
 enum { MOST_SECONDS = 30, TEXT = 400 };
-static const uint64_t MEMORY = (uint64_t)2 << 30; /* bytes, on top of a multiple of the file's size */
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define RESERVES_MEMORY
+#endif
+#endif
+#if !defined(__SANITIZE_ADDRESS__) && !defined(RESERVES_MEMORY) /* the sanitizer reserves terabytes */
+#define MEMORY ((uint64_t)2 << 30)                              /* bytes, on top of a multiple of the file's size */
+#endif
 
 /* ---- in the other process -------------------------------------------------------------------------------------------------------- */
 
@@ -140,10 +148,11 @@ static void prepare_there(off_t size) {
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, NULL);
+    alarm((unsigned)(20 * MOST_SECONDS + size / 1000000)); /* against a wait without end */
     bound(RLIMIT_CORE, 0);
     bound(RLIMIT_CPU, MOST_SECONDS + (uint64_t)size / 1000000);
-#if !defined(__SANITIZE_ADDRESS__) /* which reserves terabytes */
-    unsigned long pages = 0;       /* what this process has already, as a copy of the one that reads */
+#ifdef MEMORY
+    unsigned long pages = 0; /* what this process has already, as a copy of the one that reads */
     FILE *stream = fopen("/proc/self/statm", "r");
     if (stream != NULL && fscanf(stream, "%lu", &pages) != 1) pages = 0;
     if (stream != NULL) fclose(stream);
@@ -247,7 +256,7 @@ static ab_status open_mesh(const char *path, const char *body, ab_mark mark, int
 }
 
 static ab_status said_by(int status, const char *path, const char *body, ab_mark mark, ab_report *report) {
-    if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
+    if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM || WTERMSIG(status) == SIGKILL))
         return ab_report_error(report, mark, "body '%s': libgmsh was stopped while it read '%s', for time or memory; the file is damaged",
                                body, path);
     if (WIFSIGNALED(status))

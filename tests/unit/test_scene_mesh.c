@@ -327,6 +327,80 @@ static void test_a_method_may_be_set_from_outside(void **state) {
     forget(&o);
 }
 
+/* Any kind of value at any key: an answer, and a scene only where nothing was said against it. */
+static void test_values_of_another_kind_are_answered(void **state) {
+    (void)state;
+    static const char *const paths[] = {"bodies.beam.mesh",
+                                        "bodies.beam.mesh.box",
+                                        "bodies.beam.mesh.patch",
+                                        "bodies.beam.mesh.file",
+                                        "bodies.beam.mesh.elements",
+                                        "bodies.beam.mesh.grading",
+                                        "bodies.beam.mesh.type",
+                                        "bodies.beam.mesh.f_bar",
+                                        "bodies.beam.mesh.hourglass",
+                                        "bodies.beam.fix",
+                                        "bodies.beam.fix[0]",
+                                        "bodies.beam.fix[0].where",
+                                        "bodies.beam.fix[0].where.x",
+                                        "bodies.beam.fix[0].velocity",
+                                        "bodies.beam.method",
+                                        "bodies.punch.method",
+                                        "bodies.punch.mesh",
+                                        "bodies.punch.shape",
+                                        "bodies.punch.material",
+                                        "bodies.punch.motion",
+                                        "bodies.punch.motion.velocity",
+                                        "bodies.punch.motion.spin",
+                                        "bodies.punch.motion.center",
+                                        "bodies.punch.motion.mass",
+                                        "bodies.punch.motion.inertia",
+                                        "loads",
+                                        "loads[0]",
+                                        "loads[0].at",
+                                        "loads[0].force",
+                                        "loads[1].where",
+                                        "loads[1].traction",
+                                        "grid",
+                                        "materials",
+                                        "contact[0].algorithm"};
+    static const char *const values[] = {
+        "{}",
+        "[]",
+        "~",
+        "1",
+        "-1",
+        "word",
+        "rigid",
+        "[1, 2]",
+        "[[1, 2], [3, 4]]",
+        "[a, b]",
+        "{a: 1}",
+        "1e300",
+        "\"1e300 m\"",
+        "true",
+        "[{}]",
+        "[~, ~]",
+        "[[], []]",
+        "[[0, 0], [1e300, 1e300]]",
+        "\"\"",
+        "[1e-300, 1e-300]",
+        "{patch: {bottom: {arc: {from: [1e300, 0], to: [0, 1e300], center: [0, 0]}}, right: [[0, 0], [0, 0]], top: 1, left: {arc: 1}}}",
+        "{patch: {bottom: {arc: {from: [1e-300, 0], to: [0, 1e-300], center: [0, 0]}}, right: [[0, 1e-300], [0, 1]], top: [[0, 0], [0, "
+        "1]], left: [[1e-300, 0], [0, 0]]}, elements: [1, 1]}"};
+    for (size_t p = 0; p < sizeof paths / sizeof paths[0]; p++)
+        for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
+            /* no units, so that their database need not be read */
+            const ab_override change[] = {
+                {"materials.steel.E", "1e7"}, {"loads[0].force", "[0, 1]"}, {"bodies.punch.motion.spin", "1"}, {paths[p], values[v]}};
+            outcome o = read_bytes(base, strlen(base), change, 4);
+            assert_true(o.status == AB_OK || o.status == AB_BAD_INPUT);
+            assert_true((o.status == AB_OK) == (ab_report_errors(o.report) == 0));
+            assert_true((o.status == AB_OK) == (o.scene != NULL));
+            forget(&o);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_beam_and_a_punch_are_read_without_a_grid),
@@ -337,6 +411,7 @@ int main(void) {
         cmocka_unit_test(test_forces_at_places_of_material_points_are_refused),
         cmocka_unit_test(test_doubtful_choices_are_warned_of),
         cmocka_unit_test(test_a_method_may_be_set_from_outside),
+        cmocka_unit_test(test_values_of_another_kind_are_answered),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
