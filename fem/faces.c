@@ -17,6 +17,20 @@ static int by_place(const void *a, const void *b) {
     return p->side < q->side ? -1 : p->side > q->side;
 }
 
+/* Lists are of two to four sides, but in a file made to be hostile. */
+static void sort_short(side_key *key, size_t count) {
+    if (count > 32) {
+        qsort(key, count, sizeof *key, by_place);
+        return;
+    }
+    for (size_t k = 1; k < count; k++) {
+        const side_key here = key[k];
+        size_t at = k;
+        for (; at > 0 && by_place(&key[at - 1], &here) > 0; at--) key[at] = key[at - 1];
+        key[at] = here;
+    }
+}
+
 static const uint32_t *element_nodes(const fem_mesh *mesh, uint32_t side) {
     return mesh->connectivity + (size_t)(side / 4) * (size_t)mesh->nodes;
 }
@@ -81,7 +95,7 @@ ab_status fem_sides_join(const fem_mesh *mesh, const char *body, ab_mark mark, u
     size_t wrong = 0;
     for (size_t i = 0; i < mesh->node_count && wrong < FEM_MOST_SAID; i++) {
         const size_t from = start[i], to = start[i + 1];
-        if (to - from > 1) qsort(key + from, to - from, sizeof *key, by_place);
+        sort_short(key + from, to - from);
         for (size_t k = from, next; k < to && wrong < FEM_MOST_SAID; k = next) {
             for (next = k + 1; next < to && key[next].high == key[k].high;) next++;
             if (!join(mesh, key + k, next - k, mate, body, mark, report)) wrong++;
