@@ -42,12 +42,12 @@ void fem_gauss(const fem_element *element, int point, double place[2], double *w
     gauss(element->gauss == 9 ? 3 : element->gauss == 4 ? 2 : 1, point, place, weight);
 }
 
-static v8 det_at(int nodes, const double (*x)[8], double xi, double eta) {
+static lanes det_at(int nodes, const double (*x)[8], double xi, double eta, int first) {
     double dn[FEM_NODES][2];
     fem_shape_derivatives(nodes, xi, eta, dn);
     fem_jacobian j = {.xx = {0}};
     for (int a = 0; a < nodes; a++) {
-        const v8 px = v8_load(x[2 * a]), py = v8_load(x[2 * a + 1]);
+        const lanes px = lanes_load(x[2 * a] + first), py = lanes_load(x[2 * a + 1] + first);
         j.xx += dn[a][0] * px;
         j.xy += dn[a][1] * px;
         j.yx += dn[a][0] * py;
@@ -57,32 +57,40 @@ static v8 det_at(int nodes, const double (*x)[8], double xi, double eta) {
 }
 
 /* Row sum of the consistent mass matrix: the integral of each basis function. */
-static void row_sum(const double (*x)[8], double density, double (*mass)[8]) {
-    v8 sum[4] = {{0}};
+static void row_sum_of(const double (*x)[8], double density, double (*mass)[8], int first) {
+    lanes sum[4] = {{0}};
     for (int q = 0; q < 4; q++) {
         double place[2], weight, n[FEM_NODES];
         gauss(2, q, place, &weight);
         fem_shape(4, place[0], place[1], n);
-        const v8 volume = density * det_at(4, x, place[0], place[1]);
+        const lanes volume = density * det_at(4, x, place[0], place[1], first);
         for (int a = 0; a < 4; a++) sum[a] += n[a] * volume;
     }
-    for (int a = 0; a < 4; a++) v8_store(mass[a], sum[a]);
+    for (int a = 0; a < 4; a++) lanes_store(mass[a] + first, sum[a]);
 }
 
-/* The diagonal of the consistent mass matrix (3 x 3 points), scaled to the element's mass. Row sums of eight nodes would be negative at the corners. */
-static void diagonal_scaling(const double (*x)[8], double density, double (*mass)[8]) {
-    v8 diagonal[8] = {{0}}, volume = {0}, sum = {0};
+/* The diagonal of the consistent mass matrix (3 x 3 points), scaled to the element's mass. Row sums of eight nodes would be negative at
+ * the corners. */
+static void diagonal_scaling_of(const double (*x)[8], double density, double (*mass)[8], int first) {
+    lanes diagonal[8] = {{0}}, volume = {0}, sum = {0};
     for (int q = 0; q < 9; q++) {
         double place[2], weight, n[FEM_NODES];
         gauss(3, q, place, &weight);
         fem_shape(8, place[0], place[1], n);
-        const v8 v = weight * det_at(8, x, place[0], place[1]);
+        const lanes v = weight * det_at(8, x, place[0], place[1], first);
         volume += v;
         for (int a = 0; a < 8; a++) diagonal[a] += n[a] * n[a] * v;
     }
     for (int a = 0; a < 8; a++) sum += diagonal[a];
-    const v8 scale = density * volume / sum;
-    for (int a = 0; a < 8; a++) v8_store(mass[a], scale * diagonal[a]);
+    const lanes scale = density * volume / sum;
+    for (int a = 0; a < 8; a++) lanes_store(mass[a] + first, scale * diagonal[a]);
+}
+
+static void row_sum(const double (*x)[8], double density, double (*mass)[8]) {
+    for (int first = 0; first < 8; first += LANES) row_sum_of(x, density, mass, first);
+}
+static void diagonal_scaling(const double (*x)[8], double density, double (*mass)[8]) {
+    for (int first = 0; first < 8; first += LANES) diagonal_scaling_of(x, density, mass, first);
 }
 
 const fem_element *fem_element_of(ab_element_type type) {

@@ -1,9 +1,9 @@
 /* element_frequency.c: the highest frequency of eight free elements.
  *
- * Their stiffness is a sum of squares, K = R^T R: in plane strain each Gauss point gives the rows sqrt(V (lambda + mu)) tr, sqrt(V mu) (exx - eyy) and
- * sqrt(V mu) gxy. With masses in the columns, the frequencies squared are the eigenvalues of R^T R or of R R^T, whichever is smaller. The largest is found by
- * power iteration on the matrix instead of a vector: squared ten times it is the 1024th power, and no starting vector can miss the mode. */
-#include <math.h>
+ * Their stiffness is a sum of squares, K = R^T R: in plane strain each Gauss point gives the rows sqrt(V (lambda + mu)) tr, sqrt(V mu)
+ * (exx - eyy) and sqrt(V mu) gxy. With masses in the columns, the frequencies squared are the eigenvalues of R^T R or of R R^T,
+ * whichever is smaller. The largest is found by power iteration on the matrix instead of a vector: squared ten times it is the 1024th
+ * power, and no starting vector can miss the mode. */
 #include <string.h>
 
 #include "fem/element_inner.h"
@@ -12,19 +12,13 @@ enum { FREE = 2 * FEM_NODES, ROWS = 3 * FEM_GAUSS, SQUARINGS = 10 };
 
 typedef struct squares { /* row r, column 2*a + c */
     int count, columns;
-    v8 row[ROWS][FREE + 4]; /* q6: four more columns, its modes */
+    lanes row[ROWS][FREE + 4]; /* q6: four more columns, its modes */
 } squares;
 
-static v8 root(v8 a) {
-    v8 r;
-    for (int l = 0; l < 8; l++) r[l] = sqrt(a[l]);
-    return r;
-}
-
 /* Rows of one Gauss point from its gradients (x, y) of all columns' functions. */
-static void add_point(squares *s, v8 volume, const fem_elastic *elastic, const v8 (*g)[2], bool dilatation) {
-    const v8 shear = root(elastic->mu * volume), bulk = root((elastic->lambda + elastic->mu) * volume);
-    v8(*row)[FREE + 4] = s->row + s->count;
+static void add_point(squares *s, lanes volume, const fem_elastic *elastic, const lanes (*g)[2], bool dilatation) {
+    const lanes shear = lanes_root(elastic->mu * volume), bulk = lanes_root((elastic->lambda + elastic->mu) * volume);
+    lanes(*row)[FREE + 4] = s->row + s->count;
     for (int a = 0; 2 * a < s->columns; a++) {
         row[0][2 * a] = shear * g[a][0];
         row[0][2 * a + 1] = -shear * g[a][1];
@@ -37,10 +31,10 @@ static void add_point(squares *s, v8 volume, const fem_elastic *elastic, const v
     s->count += dilatation ? 3 : 2;
 }
 
-static fem_jacobian jacobian(int nodes, const double (*x)[8], const double (*dn)[2]) {
+static fem_jacobian jacobian(int nodes, const double (*x)[8], const double (*dn)[2], int first) {
     fem_jacobian j = {.xx = {0}};
     for (int a = 0; a < nodes; a++) {
-        const v8 px = v8_load(x[2 * a]), py = v8_load(x[2 * a + 1]);
+        const lanes px = lanes_load(x[2 * a] + first), py = lanes_load(x[2 * a + 1] + first);
         j.xx += dn[a][0] * px;
         j.xy += dn[a][1] * px;
         j.yx += dn[a][0] * py;
@@ -49,33 +43,33 @@ static fem_jacobian jacobian(int nodes, const double (*x)[8], const double (*dn)
     return j;
 }
 /* J^-T of (xi, eta). */
-static void push(fem_jacobian j, v8 r, v8 xi, v8 eta, v8 g[2]) {
+static void push(fem_jacobian j, lanes r, lanes xi, lanes eta, lanes g[2]) {
     g[0] = (j.yy * xi - j.yx * eta) * r;
     g[1] = (j.xx * eta - j.xy * xi) * r;
 }
 
-static void stiffness(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass,
+static void stiffness(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass, int first,
                       squares *s) {
     const int nodes = element->nodes;
     const bool q4 = element->strain == fem_q4_strain, q4r = element->strain == fem_q4r_strain, q6 = element->strain == fem_q6_strain;
     f_bar = f_bar && q4;
     double dn0[FEM_NODES][2];
     fem_shape_derivatives(nodes, 0, 0, dn0);
-    const fem_jacobian j0 = jacobian(nodes, x, dn0);
-    const v8 det0 = fem_det(j0), r0 = 1.0 / det0;
+    const fem_jacobian j0 = jacobian(nodes, x, dn0, first);
+    const lanes det0 = fem_det(j0), r0 = 1.0 / det0;
     s->count = 0;
     s->columns = 2 * nodes + (q6 ? 4 : 0);
-    v8 mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2];
+    lanes mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2];
     for (int q = 0; q < element->gauss; q++) {
         double place[2], weight, dn[FEM_NODES][2];
         fem_gauss(element, q, place, &weight);
         fem_shape_derivatives(nodes, place[0], place[1], dn);
-        const fem_jacobian j = jacobian(nodes, x, dn);
-        const v8 det = fem_det(j), r = 1.0 / det, volume = weight * det;
-        for (int a = 0; a < nodes; a++) push(j, r, v8_set(dn[a][0]), v8_set(dn[a][1]), g[a]);
+        const fem_jacobian j = jacobian(nodes, x, dn, first);
+        const lanes det = fem_det(j), r = 1.0 / det, volume = weight * det;
+        for (int a = 0; a < nodes; a++) push(j, r, lanes_set(dn[a][0]), lanes_set(dn[a][1]), g[a]);
         if (q6) {
-            push(j0, r, v8_set(-2 * place[0]), v8_set(0), g[4]);
-            push(j0, r, v8_set(0), v8_set(-2 * place[1]), g[5]);
+            push(j0, r, lanes_set(-2 * place[0]), lanes_set(0), g[4]);
+            push(j0, r, lanes_set(0), lanes_set(-2 * place[1]), g[5]);
         }
         add_point(s, volume, elastic, g, !f_bar);
         area += volume;
@@ -83,20 +77,21 @@ static void stiffness(const fem_element *element, const double (*x)[8], const fe
             for (int c = 0; c < 2; c++) mean[2 * a + c] += volume * g[a][c];
     }
     if (f_bar) {
-        const v8 bulk = root((elastic->lambda + elastic->mu) / area);
+        const lanes bulk = lanes_root((elastic->lambda + elastic->mu) / area);
         for (int k = 0; k < s->columns; k++) s->row[s->count][k] = bulk * mean[k];
         s->count++;
     }
     if (q4r && hourglass > 0) {
-        const fem_bilinear f = fem_bilinear_of(x, NULL);
+        const fem_bilinear f = fem_bilinear_of(x, NULL, first);
         const fem_hourglass w = fem_hourglass_of(j0, r0, elastic, hourglass);
-        const v8 slope = w.n * w.hxy / w.hxx, first = root(w.modulus * w.hxx), second = root(w.modulus * (w.hyy - w.n * w.hxy * slope));
+        const lanes slope = w.n * w.hxy / w.hxx, one = lanes_root(w.modulus * w.hxx),
+                    two = lanes_root(w.modulus * (w.hyy - w.n * w.hxy * slope));
         for (int a = 0; a < 4; a++) {
-            const v8 gamma = (a % 2 ? -0.25 : 0.25) - f.h[0] * g[a][0] - f.h[1] * g[a][1]; /* g: of the only point, the centre */
+            const lanes gamma = (a % 2 ? -0.25 : 0.25) - f.h[0] * g[a][0] - f.h[1] * g[a][1]; /* g: of the only point, the centre */
             for (int c = 0; c < 2; c++) {
-                const v8 qx = gamma * (c == 0 ? w.cosine : w.sine), qy = gamma * (c == 0 ? -w.sine : w.cosine);
-                s->row[s->count][2 * a + c] = first * (qx - slope * qy);
-                s->row[s->count + 1][2 * a + c] = second * qy;
+                const lanes qx = gamma * (c == 0 ? w.cosine : w.sine), qy = gamma * (c == 0 ? -w.sine : w.cosine);
+                s->row[s->count][2 * a + c] = one * (qx - slope * qy);
+                s->row[s->count + 1][2 * a + c] = two * qy;
             }
         }
         s->count += 2;
@@ -104,11 +99,11 @@ static void stiffness(const fem_element *element, const double (*x)[8], const fe
 }
 
 /* a = R^T R (by columns) or R R^T (by rows), lower triangle; its size. */
-static int product(const squares *s, bool by_rows, v8 (*a)[FREE + 4]) {
+static int product(const squares *s, bool by_rows, lanes (*a)[FREE + 4]) {
     const int n = by_rows ? s->count : s->columns, m = by_rows ? s->columns : s->count;
     for (int i = 0; i < n; i++)
         for (int j = 0; j <= i; j++) {
-            v8 sum = {0};
+            lanes sum = {0};
             for (int k = 0; k < m; k++) sum += by_rows ? s->row[i][k] * s->row[j][k] : s->row[k][i] * s->row[k][j];
             a[i][j] = sum;
         }
@@ -116,60 +111,67 @@ static int product(const squares *s, bool by_rows, v8 (*a)[FREE + 4]) {
 }
 
 /* Takes the last `inner` columns out: they follow the others without force. */
-static int condense(v8 (*a)[FREE + 4], int n, int inner) {
+static int condense(lanes (*a)[FREE + 4], int n, int inner) {
     for (int p = n - 1; p >= n - inner; p--) {
-        const v8 inverse = 1.0 / a[p][p];
+        const lanes inverse = 1.0 / a[p][p];
         for (int i = 0; i < p; i++) {
-            const v8 factor = a[p][i] * inverse;
+            const lanes factor = a[p][i] * inverse;
             for (int j = 0; j <= i; j++) a[i][j] -= factor * a[p][j];
         }
     }
     return n - inner;
 }
 
-/* Largest eigenvalue of a symmetric matrix without negative ones. With B = (A/s)^m of trace 1, trace(B^2) s^m lies between 0.4 of the m-th power of the largest and
- * itself, whatever the others are (16 of them at most); m = 1024 makes that 0.9 in 1000, and the middle of it is returned. */
-static v8 largest(v8 (*a)[FREE + 4], int n) {
+/* Largest eigenvalue of a symmetric matrix without negative ones. With B = (A/s)^m of trace 1, trace(B^2) s^m lies between 0.4 of the
+ * m-th power of the largest and itself, whatever the others are (16 of them at most); m = 1024 makes that 0.9 in 1000, and the middle of
+ * it is returned. */
+static lanes largest(lanes (*a)[FREE + 4], int n) {
     static const double MIDDLE = 1.00045;
-    v8 size[SQUARINGS + 1];
+    lanes size[SQUARINGS + 1];
     for (int step = 0; step <= SQUARINGS; step++) {
-        v8 trace = {0};
+        lanes trace = {0};
         for (int i = 0; i < n; i++) trace += a[i][i];
         size[step] = trace;
-        const v8 scale = 1.0 / trace;
+        const lanes scale = 1.0 / trace;
         for (int i = 0; i < n; i++)
             for (int j = 0; j <= i; j++) a[i][j] = a[j][i] = a[i][j] * scale;
         if (step == SQUARINGS) break;
-        v8 b[FREE + 4][FREE + 4];
+        lanes b[FREE + 4][FREE + 4];
         for (int i = 0; i < n; i++)
             for (int j = 0; j <= i; j++) {
-                v8 sum = {0};
+                lanes sum = {0};
                 for (int k = 0; k < n; k++) sum += a[i][k] * a[j][k];
                 b[i][j] = sum;
             }
         for (int i = 0; i < n; i++) memcpy(a[i], b[i], (size_t)(i + 1) * sizeof b[i][0]);
     }
-    v8 power = {0};
+    lanes power = {0};
     for (int i = 0; i < n; i++)
         for (int j = 0; j <= i; j++) power += (i == j ? 1.0 : 2.0) * a[i][j] * a[i][j];
-    for (int step = SQUARINGS; step > 0; step--) power = root(size[step] * power);
+    for (int step = SQUARINGS; step > 0; step--) power = lanes_root(size[step] * power);
     return MIDDLE * size[0] * power;
 }
 
-void fem_element_frequency(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass,
-                           double frequency2[8]) {
+static lanes frequency(const fem_element *element, const double (*x)[8], const double (*mass)[8], const fem_elastic *elastic, bool f_bar,
+                       double hourglass, int first) {
     squares s;
-    double mass[FEM_NODES][8];
-    v8 a[FREE + 4][FREE + 4];
-    stiffness(element, x, elastic, f_bar, hourglass, &s);
-    element->mass(x, elastic->density, mass);
+    lanes a[FREE + 4][FREE + 4];
+    stiffness(element, x, elastic, f_bar, hourglass, first, &s);
     for (int node = 0; node < element->nodes; node++) {
-        const v8 scale = 1.0 / root(v8_load(mass[node]));
+        const lanes scale = 1.0 / lanes_root(lanes_load(mass[node] + first));
         for (int r = 0; r < s.count; r++)
             for (int c = 0; c < 2; c++) s.row[r][2 * node + c] *= scale;
     }
     const int inner = s.columns - 2 * element->nodes;
     int n = product(&s, inner == 0 && s.count < s.columns, a);
     n = condense(a, n, inner);
-    v8_store(frequency2, largest(a, n));
+    return largest(a, n);
+}
+
+void fem_element_frequency(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass,
+                           double frequency2[8]) {
+    double mass[FEM_NODES][8];
+    element->mass(x, elastic->density, mass);
+    for (int first = 0; first < 8; first += LANES)
+        lanes_store(frequency2 + first, frequency(element, x, (const double(*)[8])mass, elastic, f_bar, hourglass, first));
 }

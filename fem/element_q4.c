@@ -1,77 +1,74 @@
 /* element_q4.c: the quadrilateral with four nodes and 2 x 2 Gauss points, with or without mean dilatation. */
-#include <math.h>
-
 #include "fem/element_inner.h"
 
 static const double PLACE[4][2] = {
     {-FEM_GAUSS_2, -FEM_GAUSS_2}, {FEM_GAUSS_2, -FEM_GAUSS_2}, {-FEM_GAUSS_2, FEM_GAUSS_2}, {FEM_GAUSS_2, FEM_GAUSS_2}};
 
-/* I + Hbar = (Jbar/J)^(1/2) (I + H) with J = det(I + H), Jbar its average over the volume at the start (de Souza Neto et al. 1996; in plane strain the
- * exponent is 1/2, and the volume that is averaged that of the step). Written with J - 1, which small steps need. */
-static void average_dilatation(fem_block *block) {
-    v8 volume0 = {0}, change = {0}, dilatation[4];
+/* I + Hbar = (Jbar/J)^(1/2) (I + H) with J = det(I + H), Jbar its average over the volume at the start (de Souza Neto et al. 1996; in
+ * plane strain the exponent is 1/2, and the volume that is averaged that of the step). Written with J - 1, which small steps need. */
+static void average_dilatation(fem_block *block, int first) {
+    lanes volume0 = {0}, change = {0}, dilatation[4];
     for (int q = 0; q < 4; q++) {
-        const v8 v = v8_load(block->volume0[q]), xx = v8_load(block->h[q][0]), xy = v8_load(block->h[q][1]), yx = v8_load(block->h[q][2]),
-                 yy = v8_load(block->h[q][3]);
+        const lanes v = lanes_load(block->volume0[q] + first), xx = lanes_load(block->h[q][0] + first),
+                    xy = lanes_load(block->h[q][1] + first), yx = lanes_load(block->h[q][2] + first),
+                    yy = lanes_load(block->h[q][3] + first);
         dilatation[q] = xx + yy + (xx * yy - xy * yx);
         volume0 += v;
         change += v * dilatation[q];
     }
-    const v8 average = change / volume0;
+    const lanes average = change / volume0;
     for (int q = 0; q < 4; q++) {
-        const v8 d = (average - dilatation[q]) / (1.0 + dilatation[q]);
-        v8 root;
-        for (int l = 0; l < 8; l++) root[l] = sqrt(1.0 + d[l]);
-        const v8 e = d / (1.0 + root);
+        const lanes d = (average - dilatation[q]) / (1.0 + dilatation[q]);
+        const lanes e = d / (1.0 + lanes_root(1.0 + d));
         for (int c = 0; c < 4; c++) {
-            const v8 h = v8_load(block->h[q][c]);
-            v8_store(block->h[q][c], h + e * h + (c == 0 || c == 3 ? e : (v8){0}));
+            const lanes h = lanes_load(block->h[q][c] + first);
+            lanes_store(block->h[q][c] + first, h + e * h + (c == 0 || c == 3 ? e : (lanes){0}));
         }
     }
 }
 
-void fem_q4_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
-    (void)elastic, (void)hourglass;
-    const fem_bilinear x = fem_bilinear_of(block->start, NULL), u = fem_bilinear_of(block->end, block->start),
+static inline void strain(fem_block *block, bool f_bar, int first) {
+    const fem_bilinear x = fem_bilinear_of(block->start, NULL, first), u = fem_bilinear_of(block->end, block->start, first),
                        y = fem_bilinear_sum(&x, &u, 1);
-    v8 area = {0};
+    lanes area = {0};
     for (int q = 0; q < 4; q++) {
         const fem_jacobian j = fem_bilinear_at(&x, PLACE[q][0], PLACE[q][1]);
-        const v8 det = fem_det(j), end = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]));
+        const lanes det = fem_det(j), end = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]));
         const fem_jacobian h = fem_gradient(fem_bilinear_at(&u, PLACE[q][0], PLACE[q][1]), j, 1.0 / det);
-        v8_store(block->h[q][0], h.xx);
-        v8_store(block->h[q][1], h.xy);
-        v8_store(block->h[q][2], h.yx);
-        v8_store(block->h[q][3], h.yy);
-        v8_store(block->volume0[q], det);
-        v8_store(block->volume[q], end);
+        lanes_store(block->h[q][0] + first, h.xx);
+        lanes_store(block->h[q][1] + first, h.xy);
+        lanes_store(block->h[q][2] + first, h.yx);
+        lanes_store(block->h[q][3] + first, h.yy);
+        lanes_store(block->volume0[q] + first, det);
+        lanes_store(block->volume[q] + first, end);
         area += end;
     }
-    v8_store(block->jacobian, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
-    v8_store(block->control_work, (v8){0});
-    if (f_bar) average_dilatation(block);
+    lanes_store(block->jacobian + first, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
+    lanes_store(block->control_work + first, (lanes){0});
+    lanes_store(block->control_first + first, (lanes){0});
+    if (f_bar) average_dilatation(block, first);
 }
 
-/* With mean dilatation f_a = sum V_q G_a (sigma - p I) + (sum V_q p_q) Gbar_a, Gbar the average of G over the volume, p = (sxx + syy)/2: the same as the force of
- * stresses whose p is the average one. */
-void fem_q4_force(fem_block *block, bool f_bar) {
-    const fem_bilinear y = fem_bilinear_of(block->end, NULL);
+/* With mean dilatation f_a = sum V_q G_a (sigma - p I) + (sum V_q p_q) Gbar_a, Gbar the average of G over the volume, p = (sxx + syy)/2:
+ * the same as the force of stresses whose p is the average one. */
+static inline void force(fem_block *block, bool f_bar, int first) {
+    const fem_bilinear y = fem_bilinear_of(block->end, NULL, first);
     fem_bilinear sum = {.a = {{0}}};
-    v8 mean = {0};
+    lanes mean = {0};
     if (f_bar) {
-        v8 volume = {0}, force = {0};
+        lanes volume = {0}, pressure = {0};
         for (int q = 0; q < 4; q++) {
-            const v8 v = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]));
+            const lanes v = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]));
             volume += v;
-            force += v * (v8_load(block->stress[q][0]) + v8_load(block->stress[q][1]));
+            pressure += v * (lanes_load(block->stress[q][0] + first) + lanes_load(block->stress[q][1] + first));
         }
-        mean = 0.5 * force / volume;
+        mean = 0.5 * pressure / volume;
     }
     for (int q = 0; q < 4; q++) {
-        v8 xx = v8_load(block->stress[q][0]), yy = v8_load(block->stress[q][1]);
-        const v8 xy = v8_load(block->stress[q][3]);
+        lanes xx = lanes_load(block->stress[q][0] + first), yy = lanes_load(block->stress[q][1] + first);
+        const lanes xy = lanes_load(block->stress[q][3] + first);
         if (f_bar) {
-            const v8 half = 0.5 * (xx - yy);
+            const lanes half = 0.5 * (xx - yy);
             xx = mean + half;
             yy = mean - half;
         }
@@ -83,5 +80,13 @@ void fem_q4_force(fem_block *block, bool f_bar) {
         sum.b[1] += p.yy;
         sum.h[1] += PLACE[q][1] * p.yx + PLACE[q][0] * p.yy;
     }
-    fem_bilinear_force(&sum, block->force);
+    fem_bilinear_force(&sum, block->force, first);
+}
+
+void fem_q4_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
+    (void)elastic, (void)hourglass;
+    for (int first = 0; first < 8; first += LANES) strain(block, f_bar, first);
+}
+void fem_q4_force(fem_block *block, bool f_bar) {
+    for (int first = 0; first < 8; first += LANES) force(block, f_bar, first);
 }

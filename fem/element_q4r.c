@@ -1,54 +1,65 @@
 /* element_q4r.c: the quadrilateral with four nodes and one Gauss point, its two hourglass modes held by physical stabilisation.
  *
- * extra[0], extra[1]: the forces Qx, Qy (N) conjugate to the hourglass coordinates qx, qy in the element's own frame, which turns with it: so they are objective, and
- * grow from step to step with the strains of the modes. Here the coordinate of a field u is its part in xi eta less what the linear part of the geometry has of it:
- * q = u_h - (du/dx) x_h - (du/dy) y_h, which is gamma.u of Flanagan and Belytschko (1981) and zero for every linear u. */
+ * extra[0], extra[1]: the forces Qx, Qy (N) conjugate to the hourglass coordinates qx, qy in the element's own frame, which turns with
+ * it: so they are objective, and grow from step to step with the strains of the modes. Here the coordinate of a field u is its part in
+ * xi eta less what the linear part of the geometry has of it: q = u_h - (du/dx) x_h - (du/dy) y_h, which is gamma.u of Flanagan and
+ * Belytschko (1981) and zero for every linear u. */
 #include "fem/element_inner.h"
 
-void fem_q4r_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
-    (void)f_bar; /* one point: the dilatation is the mean one as it is */
-    const fem_bilinear x = fem_bilinear_of(block->start, NULL), u = fem_bilinear_of(block->end, block->start),
+static inline void strain(fem_block *block, const fem_elastic *elastic, double hourglass, int first) {
+    const fem_bilinear x = fem_bilinear_of(block->start, NULL, first), u = fem_bilinear_of(block->end, block->start, first),
                        middle = fem_bilinear_sum(&x, &u, 0.5), y = fem_bilinear_sum(&x, &u, 1);
     const fem_jacobian j = fem_bilinear_at(&x, 0, 0), du = fem_bilinear_at(&u, 0, 0);
-    const v8 det = fem_det(j), area = 4.0 * fem_det(fem_bilinear_at(&y, 0, 0));
+    const lanes det = fem_det(j), area = 4.0 * fem_det(fem_bilinear_at(&y, 0, 0));
     const fem_jacobian h = fem_gradient(du, j, 1.0 / det);
-    v8_store(block->h[0][0], h.xx);
-    v8_store(block->h[0][1], h.xy);
-    v8_store(block->h[0][2], h.yx);
-    v8_store(block->h[0][3], h.yy);
-    v8_store(block->volume0[0], 4.0 * det);
-    v8_store(block->volume[0], area);
-    v8_store(block->jacobian, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
+    lanes_store(block->h[0][0] + first, h.xx);
+    lanes_store(block->h[0][1] + first, h.xy);
+    lanes_store(block->h[0][2] + first, h.yx);
+    lanes_store(block->h[0][3] + first, h.yy);
+    lanes_store(block->volume0[0] + first, 4.0 * det);
+    lanes_store(block->volume[0] + first, area);
+    lanes_store(block->jacobian + first, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
     if (hourglass == 0.0) {
-        v8_store(block->control_work, (v8){0});
+        lanes_store(block->control_work + first, (lanes){0});
+        lanes_store(block->control_first + first, (lanes){0});
         return;
     }
     /* The increment in the middle of the step. */
     const fem_jacobian m = fem_bilinear_at(&middle, 0, 0);
-    const v8 r = 1.0 / fem_det(m);
+    const lanes r = 1.0 / fem_det(m);
     const fem_jacobian g = fem_gradient(du, m, r);
     const fem_hourglass s = fem_hourglass_of(m, r, elastic, hourglass);
-    const v8 dx = u.h[0] - g.xx * middle.h[0] - g.xy * middle.h[1], dy = u.h[1] - g.yx * middle.h[0] - g.yy * middle.h[1];
-    const v8 qx = s.cosine * dx + s.sine * dy, qy = s.cosine * dy - s.sine * dx;
-    const v8 cross = s.n * s.hxy;
-    const v8 gain_x = s.modulus * (s.hxx * qx - cross * qy), gain_y = s.modulus * (s.hyy * qy - cross * qx);
-    const v8 old_x = v8_load(block->extra[0]), old_y = v8_load(block->extra[1]);
-    v8_store(block->extra[0], old_x + gain_x);
-    v8_store(block->extra[1], old_y + gain_y);
-    v8_store(block->control_work, (old_x + 0.5 * gain_x) * qx + (old_y + 0.5 * gain_y) * qy);
+    const lanes dx = u.h[0] - g.xx * middle.h[0] - g.xy * middle.h[1], dy = u.h[1] - g.yx * middle.h[0] - g.yy * middle.h[1];
+    const lanes qx = s.cosine * dx + s.sine * dy, qy = s.cosine * dy - s.sine * dx;
+    const lanes cross = s.n * s.hxy;
+    const lanes gain_x = s.modulus * (s.hxx * qx - cross * qy), gain_y = s.modulus * (s.hyy * qy - cross * qx);
+    const lanes old_x = lanes_load(block->extra[0] + first), old_y = lanes_load(block->extra[1] + first);
+    lanes_store(block->extra[0] + first, old_x + gain_x);
+    lanes_store(block->extra[1] + first, old_y + gain_y);
+    lanes_store(block->control_work + first, (old_x + 0.5 * gain_x) * qx + (old_y + 0.5 * gain_y) * qy);
+    lanes_store(block->control_first + first, old_x * qx + old_y * qy);
 }
 
-void fem_q4r_force(fem_block *block, bool f_bar) {
-    (void)f_bar;
-    const fem_bilinear y = fem_bilinear_of(block->end, NULL);
+static inline void force(fem_block *block, int first) {
+    const fem_bilinear y = fem_bilinear_of(block->end, NULL, first);
     const fem_jacobian j = fem_bilinear_at(&y, 0, 0);
-    const fem_jacobian p = fem_pull(v8_load(block->stress[0][0]), v8_load(block->stress[0][1]), v8_load(block->stress[0][3]), j);
-    v8 c, s;
+    const fem_jacobian p = fem_pull(lanes_load(block->stress[0][0] + first), lanes_load(block->stress[0][1] + first),
+                                    lanes_load(block->stress[0][3] + first), j);
+    lanes c, s;
     fem_frame(j, &c, &s);
-    const v8 qx = v8_load(block->extra[0]), qy = v8_load(block->extra[1]), r = 1.0 / fem_det(j);
-    const v8 along = (y.h[0] * j.yy - y.h[1] * j.xy) * r, across = (y.h[1] * j.xx - y.h[0] * j.yx) * r;
-    const v8 fx = c * qx - s * qy, fy = s * qx + c * qy;
+    const lanes qx = lanes_load(block->extra[0] + first), qy = lanes_load(block->extra[1] + first), r = 1.0 / fem_det(j);
+    const lanes along = (y.h[0] * j.yy - y.h[1] * j.xy) * r, across = (y.h[1] * j.xx - y.h[0] * j.yx) * r;
+    const lanes fx = c * qx - s * qy, fy = s * qx + c * qy;
     const fem_bilinear sum = {
         .a = {4.0 * p.xx - along * fx, 4.0 * p.yx - along * fy}, .b = {4.0 * p.xy - across * fx, 4.0 * p.yy - across * fy}, .h = {fx, fy}};
-    fem_bilinear_force(&sum, block->force);
+    fem_bilinear_force(&sum, block->force, first);
+}
+
+void fem_q4r_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
+    (void)f_bar; /* one point: the dilatation is the mean one as it is */
+    for (int first = 0; first < 8; first += LANES) strain(block, elastic, hourglass, first);
+}
+void fem_q4r_force(fem_block *block, bool f_bar) {
+    (void)f_bar;
+    for (int first = 0; first < 8; first += LANES) force(block, first);
 }

@@ -1,10 +1,10 @@
-/* element_q6.c: the quadrilateral with four nodes, 2 x 2 Gauss points and the incompatible modes 1 - xi^2 and 1 - eta^2 (Wilson et al. 1973) in the form of Taylor,
- * Beresford and Wilson (1976): their gradients go by the Jacobian at the centre, (J0/J) J0^-T grad N, so that they do no work on constant stress and the patch test
- * holds for every shape.
+/* element_q6.c: the quadrilateral with four nodes, 2 x 2 Gauss points and the incompatible modes 1 - xi^2 and 1 - eta^2 (Wilson et al.
+ * 1973) in the form of Taylor, Beresford and Wilson (1976): their gradients go by the Jacobian at the centre, (J0/J) J0^-T grad N, so
+ * that they do no work on constant stress and the patch test holds for every shape.
  *
- * The modes keep no state. In each step their increments are those that an elastic element would take, and bring back half of what is left of the residual
- * sum V_q sigma_q G at the start: half, because a material that has grown more than twice as stiff as at its beginning would otherwise be led beyond the
- * mark in every step. */
+ * The modes keep no state. In each step their increments are those that an elastic element would take, and bring back half of what is
+ * left of the residual sum V_q sigma_q G at the start: half, because a material that has grown more than twice as stiff as at its
+ * beginning would otherwise be led beyond the mark in every step. */
 #include "fem/element_inner.h"
 
 static const double PLACE[4][2] = {
@@ -12,12 +12,12 @@ static const double PLACE[4][2] = {
 static const double RETURN = 0.5;
 
 /* Solves k a = r for symmetric positive k, lower triangle given. */
-static inline void solve_modes(v8 k[4][4], v8 r[4]) {
-    v8 inverse[4];
+static inline void solve_modes(lanes k[4][4], lanes r[4]) {
+    lanes inverse[4];
     for (int i = 0; i < 4; i++) {
         inverse[i] = 1.0 / k[i][i];
         for (int m = i + 1; m < 4; m++) {
-            const v8 factor = k[m][i] * inverse[i];
+            const lanes factor = k[m][i] * inverse[i];
             for (int n = m; n < 4; n++) k[n][m] -= factor * k[n][i];
             r[m] -= factor * r[i];
         }
@@ -28,43 +28,42 @@ static inline void solve_modes(v8 k[4][4], v8 r[4]) {
     }
 }
 
-void fem_q6_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
-    (void)f_bar, (void)hourglass; /* free of locking as it is */
+static inline void strain(fem_block *block, const fem_elastic *elastic, int first) {
     const double lambda = elastic->lambda, mu = elastic->mu;
-    const fem_bilinear x = fem_bilinear_of(block->start, NULL), u = fem_bilinear_of(block->end, block->start),
+    const fem_bilinear x = fem_bilinear_of(block->start, NULL, first), u = fem_bilinear_of(block->end, block->start, first),
                        y = fem_bilinear_sum(&x, &u, 1);
     const fem_jacobian j0 = fem_bilinear_at(&x, 0, 0);
-    const v8 det0 = fem_det(j0), r0 = 1.0 / det0;
-    const v8 gx[2] = {j0.yy * r0, -j0.yx * r0}, gy[2] = {-j0.xy * r0, j0.xx * r0}; /* J0^-T of the two directions */
+    const lanes det0 = fem_det(j0), r0 = 1.0 / det0;
+    const lanes gx[2] = {j0.yy * r0, -j0.yx * r0}, gy[2] = {-j0.xy * r0, j0.xx * r0}; /* J0^-T of the two directions */
     fem_jacobian h[4];
-    v8 ratio[4], same = {0}, mixed = {0}, area = {0}, r[4] = {{0}};
+    lanes ratio[4], same = {0}, mixed = {0}, area = {0}, r[4] = {{0}};
     for (int q = 0; q < 4; q++) {
         const double xi = PLACE[q][0], eta = PLACE[q][1];
         const fem_jacobian j = fem_bilinear_at(&x, xi, eta);
-        const v8 det = fem_det(j), end = fem_det(fem_bilinear_at(&y, xi, eta)), inverse = 1.0 / det;
+        const lanes det = fem_det(j), end = fem_det(fem_bilinear_at(&y, xi, eta)), inverse = 1.0 / det;
         h[q] = fem_gradient(fem_bilinear_at(&u, xi, eta), j, inverse);
         ratio[q] = det0 * inverse;
         same += ratio[q];
         mixed += (xi * eta > 0 ? 1.0 : -1.0) * ratio[q];
-        v8_store(block->volume0[q], det);
-        v8_store(block->volume[q], end);
+        lanes_store(block->volume0[q] + first, det);
+        lanes_store(block->volume[q] + first, end);
         area += end;
         /* what the modes feel: the stress that an elastic element without them would gain, and what was left over */
-        const v8 pressure = lambda * (h[q].xx + h[q].yy);
-        const v8 xx = pressure + 2 * mu * h[q].xx + RETURN * v8_load(block->stress[q][0]);
-        const v8 yy = pressure + 2 * mu * h[q].yy + RETURN * v8_load(block->stress[q][1]);
-        const v8 xy = mu * (h[q].xy + h[q].yx) + RETURN * v8_load(block->stress[q][3]);
+        const lanes pressure = lambda * (h[q].xx + h[q].yy);
+        const lanes xx = pressure + 2 * mu * h[q].xx + RETURN * lanes_load(block->stress[q][0] + first);
+        const lanes yy = pressure + 2 * mu * h[q].yy + RETURN * lanes_load(block->stress[q][1] + first);
+        const lanes xy = mu * (h[q].xy + h[q].yx) + RETURN * lanes_load(block->stress[q][3] + first);
         for (int m = 0; m < 2; m++) {
-            const v8 w = (-2 * PLACE[q][m]) * det0;
+            const lanes w = (-2 * PLACE[q][m]) * det0;
             r[2 * m] -= w * (xx * gx[m] + xy * gy[m]);
             r[2 * m + 1] -= w * (xy * gx[m] + yy * gy[m]);
         }
     }
     /* stiffness of the modes: 4 det0 (sum of xi_m xi_n J0/J) (lambda g_m g_n^T + mu (g_n g_m^T + g_m.g_n I)) */
-    v8 k[4][4];
+    lanes k[4][4];
     for (int m = 0; m < 2; m++)
         for (int n = 0; n <= m; n++) {
-            const v8 w = 4.0 / 3.0 * det0 * (m == n ? same : mixed), dot = mu * (gx[m] * gx[n] + gy[m] * gy[n]);
+            const lanes w = 4.0 / 3.0 * det0 * (m == n ? same : mixed), dot = mu * (gx[m] * gx[n] + gy[m] * gy[n]);
             k[2 * m][2 * n] = w * ((lambda + mu) * gx[m] * gx[n] + dot);
             k[2 * m + 1][2 * n + 1] = w * ((lambda + mu) * gy[m] * gy[n] + dot);
             k[2 * m + 1][2 * n] = w * (lambda * gy[m] * gx[n] + mu * gx[m] * gy[n]);
@@ -72,14 +71,20 @@ void fem_q6_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, dou
         }
     solve_modes(k, r);
     for (int q = 0; q < 4; q++) {
-        const v8 a = (-2 * PLACE[q][0]) * ratio[q], b = (-2 * PLACE[q][1]) * ratio[q];
-        v8_store(block->h[q][0], h[q].xx + a * r[0] * gx[0] + b * r[2] * gx[1]);
-        v8_store(block->h[q][1], h[q].xy + a * r[0] * gy[0] + b * r[2] * gy[1]);
-        v8_store(block->h[q][2], h[q].yx + a * r[1] * gx[0] + b * r[3] * gx[1]);
-        v8_store(block->h[q][3], h[q].yy + a * r[1] * gy[0] + b * r[3] * gy[1]);
+        const lanes a = (-2 * PLACE[q][0]) * ratio[q], b = (-2 * PLACE[q][1]) * ratio[q];
+        lanes_store(block->h[q][0] + first, h[q].xx + a * r[0] * gx[0] + b * r[2] * gx[1]);
+        lanes_store(block->h[q][1] + first, h[q].xy + a * r[0] * gy[0] + b * r[2] * gy[1]);
+        lanes_store(block->h[q][2] + first, h[q].yx + a * r[1] * gx[0] + b * r[3] * gx[1]);
+        lanes_store(block->h[q][3] + first, h[q].yy + a * r[1] * gy[0] + b * r[3] * gy[1]);
     }
-    v8_store(block->jacobian, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
-    v8_store(block->control_work, (v8){0});
+    lanes_store(block->jacobian + first, fem_relative_jacobian(fem_bilinear_lowest(&y), area));
+    lanes_store(block->control_work + first, (lanes){0});
+    lanes_store(block->control_first + first, (lanes){0});
+}
+
+void fem_q6_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
+    (void)f_bar, (void)hourglass; /* free of locking as it is */
+    for (int first = 0; first < 8; first += LANES) strain(block, elastic, first);
 }
 
 void fem_q6_force(fem_block *block, bool f_bar) {

@@ -1,19 +1,20 @@
 /* element_q8.c: the serendipity quadrilateral with eight nodes, 3 x 3 or 2 x 2 Gauss points.
  *
- * A field is c + xi a + eta b + xi eta h + xi^2 aa + eta^2 bb + xi^2 eta aab + xi eta^2 abb; the loops over Gauss points see these seven and the forces conjugate to
- * them, not the nodes. */
+ * A field is c + xi a + eta b + xi eta h + xi^2 aa + eta^2 bb + xi^2 eta aab + xi eta^2 abb; the loops over Gauss points see these seven
+ * and the forces conjugate to them, not the nodes. */
 #include "fem/element_inner.h"
 
 typedef struct serendipity {
-    v8 a[2], b[2], h[2], aa[2], bb[2], aab[2], abb[2];
+    lanes a[2], b[2], h[2], aa[2], bb[2], aab[2], abb[2];
 } serendipity;
 
-static inline serendipity serendipity_of(const double (*x)[8], const double (*minus)[8]) {
+static inline serendipity serendipity_of(const double (*x)[8], const double (*minus)[8], int first) {
     serendipity f;
     for (int c = 0; c < 2; c++) {
-        v8 n[8];
-        for (int k = 0; k < 8; k++) n[k] = minus ? v8_load(x[2 * k + c]) - v8_load(minus[2 * k + c]) : v8_load(x[2 * k + c]);
-        const v8 bottom = n[1] - n[0], top = n[2] - n[3], left = n[3] - n[0], right = n[2] - n[1];
+        lanes n[8];
+        for (int k = 0; k < 8; k++)
+            n[k] = minus ? lanes_load(x[2 * k + c] + first) - lanes_load(minus[2 * k + c] + first) : lanes_load(x[2 * k + c] + first);
+        const lanes bottom = n[1] - n[0], top = n[2] - n[3], left = n[3] - n[0], right = n[2] - n[1];
         f.a[c] = 0.5 * (n[5] - n[7]);
         f.b[c] = 0.5 * (n[6] - n[4]);
         f.h[c] = 0.25 * (top - bottom);
@@ -35,45 +36,46 @@ static inline fem_jacobian serendipity_at(const serendipity *f, double xi, doubl
     };
 }
 
-static inline __attribute__((always_inline)) void strain(fem_block *block, const int side) {
-    const serendipity x = serendipity_of(block->start, NULL), u = serendipity_of(block->end, block->start);
-    v8 area = {0}, lowest = v8_set(1e300);
+static inline __attribute__((always_inline)) void strain(fem_block *block, const int side, int first) {
+    const serendipity x = serendipity_of(block->start, NULL, first), u = serendipity_of(block->end, block->start, first);
+    lanes area = {0}, lowest = lanes_set(1e300);
     for (int q = 0; q < side * side; q++) {
         const double g = side == 2 ? FEM_GAUSS_2 : FEM_GAUSS_3, step = side == 2 ? 2 * g : g;
         const int column = q % side, row = q / side;
         const double xi = -g + step * column, eta = -g + step * row;
         const double w = side == 2 ? 1 : (column == 1 ? 8.0 / 9 : 5.0 / 9) * (row == 1 ? 8.0 / 9 : 5.0 / 9);
         const fem_jacobian j = serendipity_at(&x, xi, eta), du = serendipity_at(&u, xi, eta);
-        const v8 det = fem_det(j), end = fem_det(fem_jacobian_sum(j, du));
+        const lanes det = fem_det(j), end = fem_det(fem_jacobian_sum(j, du));
         const fem_jacobian h = fem_gradient(du, j, 1.0 / det);
-        v8_store(block->h[q][0], h.xx);
-        v8_store(block->h[q][1], h.xy);
-        v8_store(block->h[q][2], h.yx);
-        v8_store(block->h[q][3], h.yy);
-        v8_store(block->volume0[q], w * det);
-        v8_store(block->volume[q], w * end);
+        lanes_store(block->h[q][0] + first, h.xx);
+        lanes_store(block->h[q][1] + first, h.xy);
+        lanes_store(block->h[q][2] + first, h.yx);
+        lanes_store(block->h[q][3] + first, h.yy);
+        lanes_store(block->volume0[q] + first, w * det);
+        lanes_store(block->volume[q] + first, w * end);
         area += w * end;
-        lowest = v8_min(lowest, end);
+        lowest = lanes_min(lowest, end);
     }
     for (int k = 0; k < 4; k++) {
         const double xi = k == 1 || k == 2 ? 1 : -1, eta = k >= 2 ? 1 : -1;
-        lowest = v8_min(lowest, fem_det(fem_jacobian_sum(serendipity_at(&x, xi, eta), serendipity_at(&u, xi, eta))));
+        lowest = lanes_min(lowest, fem_det(fem_jacobian_sum(serendipity_at(&x, xi, eta), serendipity_at(&u, xi, eta))));
     }
-    v8_store(block->jacobian, fem_relative_jacobian(lowest, area));
-    v8_store(block->control_work, (v8){0});
+    lanes_store(block->jacobian + first, fem_relative_jacobian(lowest, area));
+    lanes_store(block->control_work + first, (lanes){0});
+    lanes_store(block->control_first + first, (lanes){0});
 }
 
-static inline __attribute__((always_inline)) void force(fem_block *block, const int side) {
-    const serendipity y = serendipity_of(block->end, NULL);
+static inline __attribute__((always_inline)) void force(fem_block *block, const int side, int first) {
+    const serendipity y = serendipity_of(block->end, NULL, first);
     serendipity s = {.a = {{0}}};
     for (int q = 0; q < side * side; q++) {
         const double g = side == 2 ? FEM_GAUSS_2 : FEM_GAUSS_3, step = side == 2 ? 2 * g : g;
         const int column = q % side, row = q / side;
         const double xi = -g + step * column, eta = -g + step * row;
         const double w = side == 2 ? 1 : (column == 1 ? 8.0 / 9 : 5.0 / 9) * (row == 1 ? 8.0 / 9 : 5.0 / 9);
-        const fem_jacobian p = fem_pull(w * v8_load(block->stress[q][0]), w * v8_load(block->stress[q][1]),
-                                        w * v8_load(block->stress[q][3]), serendipity_at(&y, xi, eta));
-        const v8 along[2] = {p.xx, p.yx}, across[2] = {p.xy, p.yy};
+        const fem_jacobian p = fem_pull(w * lanes_load(block->stress[q][0] + first), w * lanes_load(block->stress[q][1] + first),
+                                        w * lanes_load(block->stress[q][3] + first), serendipity_at(&y, xi, eta));
+        const lanes along[2] = {p.xx, p.yx}, across[2] = {p.xy, p.yy};
         for (int c = 0; c < 2; c++) {
             s.a[c] += along[c];
             s.b[c] += across[c];
@@ -85,32 +87,32 @@ static inline __attribute__((always_inline)) void force(fem_block *block, const 
         }
     }
     for (int c = 0; c < 2; c++) {
-        const v8 both = 0.25 * (s.aa[c] + s.bb[c]), h = 0.25 * s.h[c], aab = 0.25 * s.aab[c], abb = 0.25 * s.abb[c];
-        v8_store(block->force[0 + c], both + h - aab - abb);
-        v8_store(block->force[2 + c], both - h - aab + abb);
-        v8_store(block->force[4 + c], both + h + aab + abb);
-        v8_store(block->force[6 + c], both - h + aab - abb);
-        const v8 vertical = 0.5 * (s.b[c] - s.aab[c]), horizontal = 0.5 * (s.a[c] - s.abb[c]), aa = 0.5 * s.aa[c], bb = 0.5 * s.bb[c];
-        v8_store(block->force[8 + c], -aa - vertical);
-        v8_store(block->force[10 + c], horizontal - bb);
-        v8_store(block->force[12 + c], vertical - aa);
-        v8_store(block->force[14 + c], -horizontal - bb);
+        const lanes both = 0.25 * (s.aa[c] + s.bb[c]), h = 0.25 * s.h[c], aab = 0.25 * s.aab[c], abb = 0.25 * s.abb[c];
+        lanes_store(block->force[0 + c] + first, both + h - aab - abb);
+        lanes_store(block->force[2 + c] + first, both - h - aab + abb);
+        lanes_store(block->force[4 + c] + first, both + h + aab + abb);
+        lanes_store(block->force[6 + c] + first, both - h + aab - abb);
+        const lanes vertical = 0.5 * (s.b[c] - s.aab[c]), horizontal = 0.5 * (s.a[c] - s.abb[c]), aa = 0.5 * s.aa[c], bb = 0.5 * s.bb[c];
+        lanes_store(block->force[8 + c] + first, -aa - vertical);
+        lanes_store(block->force[10 + c] + first, horizontal - bb);
+        lanes_store(block->force[12 + c] + first, vertical - aa);
+        lanes_store(block->force[14 + c] + first, -horizontal - bb);
     }
 }
 
 void fem_q8_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
     (void)elastic, (void)f_bar, (void)hourglass;
-    strain(block, 3);
+    for (int first = 0; first < 8; first += LANES) strain(block, 3, first);
 }
 void fem_q8_force(fem_block *block, bool f_bar) {
     (void)f_bar;
-    force(block, 3);
+    for (int first = 0; first < 8; first += LANES) force(block, 3, first);
 }
 void fem_q8r_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
     (void)elastic, (void)f_bar, (void)hourglass;
-    strain(block, 2);
+    for (int first = 0; first < 8; first += LANES) strain(block, 2, first);
 }
 void fem_q8r_force(fem_block *block, bool f_bar) {
     (void)f_bar;
-    force(block, 2);
+    for (int first = 0; first < 8; first += LANES) force(block, 2, first);
 }
