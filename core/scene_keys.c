@@ -138,7 +138,10 @@ static const ab_key mesh[] = {
     [MESH_HOURGLASS] = {"hourglass", AB_KEY_NUMBER, .unit = "1", .initial = "1", POSITIVE,
                         .help = "part of the stabilisation that the exact stiffness in bending asks for; type q4r"},
 };
-SECTION(mesh, "bodies.NAME.mesh", mesh, NULL, "One of `box`, `patch` and `file`.",
+SECTION(mesh, "bodies.NAME.mesh", mesh, NULL,
+        "One of `box`, `patch` and `file`. A file (.msh of Gmsh, any version of the format) holds quadrilaterals only, of 4 nodes "
+        "(Mesh.RecombineAll = 1) or of 8 (besides, Mesh.ElementOrder = 2 and Mesh.SecondOrderIncomplete = 1) as `type` has them; all its "
+        "surfaces are taken together, and its numbers stand in messages.",
         "mesh: {box: [[0, 0], [3.75, 0.5]], elements: [15, 2], type: q8}\n");
 
 static const ab_key patch[] = {

@@ -4,7 +4,7 @@
 
 #include "core/scene_reader.h"
 
-enum { MOST_POINTS = 2000, MOST_ELEMENTS = 4000000 };
+enum { MOST_POINTS = 2000, MOST_ELEMENTS = 4000000 /* as of a mesh file */ };
 static const double MOST_GRADING = 1e6;
 
 static const ab_key place = {"", AB_KEY_POINT, .unit = "m", .help = ""};
@@ -115,6 +115,22 @@ static void edge_sample(const ab_edge_spec *edge, int sample, int samples, doubl
     x[1] = edge->center[1] + radius * sin(at);
 }
 
+/* Where an arc comes closest to a side of its bounds: its points due east, north, west and south of the center, as far as it has them. */
+static void arc_bounds(const ab_edge_spec *edge, double low[2], double high[2]) {
+    double arm[2][2];
+    for (int i = 0; i < 2; i++)
+        for (int d = 0; d < 2; d++) arm[i][d] = edge->points[i][d] - edge->center[d];
+    const double radius = hypot(arm[0][0], arm[0][1]), way = arm[0][0] * arm[1][1] - arm[0][1] * arm[1][0] > 0 ? 1 : -1;
+    for (int k = 0; k < 4; k++) {
+        const double out[2] = {k % 2 == 0 ? 1 - k : 0, k % 2 == 1 ? 2 - k : 0};
+        const double after = way * (arm[0][0] * out[1] - arm[0][1] * out[0]), before = way * (out[0] * arm[1][1] - out[1] * arm[1][0]);
+        if (after < 0 || before < 0 || out[0] * (arm[0][0] + arm[1][0]) + out[1] * (arm[0][1] + arm[1][1]) < 0) continue;
+        const int d = k % 2;
+        low[d] = fmin(low[d], edge->center[d] + radius * out[d]);
+        high[d] = fmax(high[d], edge->center[d] + radius * out[d]);
+    }
+}
+
 static bool mesh_bounds(const ab_mesh_spec *mesh, double low[2], double high[2]) {
     if (mesh->kind == AB_MESH_BOX) {
         memcpy(low, mesh->low, 2 * sizeof *low);
@@ -125,12 +141,9 @@ static bool mesh_bounds(const ab_mesh_spec *mesh, double low[2], double high[2])
     for (int d = 0; d < 2; d++) low[d] = INFINITY, high[d] = -INFINITY;
     for (int e = 0; e < 4; e++) {
         const ab_edge_spec *edge = &mesh->edge[e];
-        const int samples = edge->arc ? 64 : (int)edge->count - 1;
-        for (int k = 0; k <= samples; k++) {
-            double x[2];
-            edge_sample(edge, k, samples, x);
-            for (int d = 0; d < 2; d++) low[d] = fmin(low[d], x[d]), high[d] = fmax(high[d], x[d]);
-        }
+        for (size_t i = 0; i < edge->count; i++)
+            for (int d = 0; d < 2; d++) low[d] = fmin(low[d], edge->points[i][d]), high[d] = fmax(high[d], edge->points[i][d]);
+        if (edge->arc) arc_bounds(edge, low, high);
     }
     return true;
 }

@@ -76,10 +76,39 @@ static void patch_place(const void *context, double s, double t, double x[2]) {
                (1 - s) * ((1 - t) * corner[0][0][d] + t * corner[1][0][d]) - s * ((1 - t) * corner[0][1][d] + t * corner[1][1][d]);
 }
 
+/* A sharp corner of an edge (more than 10 degrees) that no corner of an element meets is cut off by the mesh: said once an edge. */
+static void warn_of_kinks(const ab_body_spec *spec, int side, const edge *e, ab_report *report) {
+    static const char *const names[] = {"bottom", "right", "top", "left"};
+    const int way = side == BOTTOM || side == TOP ? 0 : 1;
+    const long n = spec->mesh.elements[way];
+    double *s = malloc(((size_t)n + 1) * sizeof *s);
+    if (s == NULL || e->spec->arc) {
+        free(s);
+        return;
+    }
+    fem_mesh_divide(n, spec->mesh.grading[way], s);
+    for (size_t i = 1; i + 1 < e->spec->count; i++) {
+        const double *a = e->spec->points[i - 1], *b = e->spec->points[i], *c = e->spec->points[i + 1];
+        const double in[2] = {b[0] - a[0], b[1] - a[1]}, out[2] = {c[0] - b[0], c[1] - b[1]};
+        if (fabs(atan2(in[0] * out[1] - in[1] * out[0], in[0] * out[0] + in[1] * out[1])) < 0.1745) continue;
+        double nearest = 1;
+        for (long k = 0; k <= n; k++) nearest = fmin(nearest, fabs(s[k] - e->length[i]));
+        if (nearest < 1e-9) continue;
+        ab_report_warning(
+            report, spec->mesh.mark,
+            "body '%s': the corner at [%.10g, %.10g] of the patch's %s edge lies between two corners of elements and is cut off; it "
+            "stands at %.6g of the edge's length: choose elements and grading so that one ends there",
+            spec->name, b[0], b[1], names[side], e->length[i]);
+        break;
+    }
+    free(s);
+}
+
 ab_status fem_mesh_patch(const ab_body_spec *spec, fem_mesh **mesh, ab_report *report) {
     patch p = {0};
     bool good = true;
     for (int k = 0; k < 4; k++) good = edge_prepare(&spec->mesh.edge[k], &p.edges[k]) && good;
+    for (int k = 0; good && k < 4; k++) warn_of_kinks(spec, k, &p.edges[k], report);
     const ab_status status = good ? fem_mesh_lattice(spec, patch_place, &p, mesh, report)
                                   : ab_report_failure(report, "no memory for the mesh of body '%s'", spec->name);
     for (int k = 0; k < 4; k++) free(p.edges[k].length);

@@ -122,6 +122,26 @@ static void test_a_patch_follows_points_by_length(void **state) {
     fem_mesh_destroy(patch);
 }
 
+static void test_a_corner_that_no_element_meets_is_warned_of(void **state) {
+    (void)state;
+    double bottom[3][2] = {{0, 0}, {2, -1}, {4, 0}}, right[2][2] = {{4, 0}, {4, 2}}, top[2][2] = {{0, 2}, {4, 2}},
+           left[2][2] = {{0, 0}, {0, 2}};
+    const ab_edge_spec edge[4] = {{bottom, 3, false, {0}}, {right, 2, false, {0}}, {top, 2, false, {0}}, {left, 2, false, {0}}};
+    for (long n = 4; n < 6; n++) {
+        ab_body_spec spec = box_body(AB_ELEMENT_Q8, 0, 0, 1, 1, n, 2);
+        spec.mesh.kind = AB_MESH_PATCH;
+        memcpy(spec.mesh.edge, edge, sizeof edge);
+        ab_report *report = ab_report_create();
+        fem_mesh *mesh = NULL;
+        assert_int_equal(fem_mesh_create(&spec, ".", &mesh, report), AB_OK);
+        assert_int_equal(ab_report_warnings(report), n == 5);
+        if (n == 5) assert_non_null(strstr(ab_report_text(report, 0), "the corner at [2, -1] of the patch's bottom edge"));
+        if (n == 4) assert_float_equal(area_of(mesh), 10, 1e-13);
+        fem_mesh_destroy(mesh);
+        ab_report_destroy(report);
+    }
+}
+
 static void test_a_folded_patch_is_refused(void **state) {
     (void)state;
     double bottom[3][2] = {{0, 0}, {2, 3}, {4, 0}}, right[2][2] = {{4, 0}, {4, 2}}, top[2][2] = {{0, 2}, {4, 2}},
@@ -258,6 +278,7 @@ int main(void) {
         cmocka_unit_test(test_grading_is_geometric_from_the_first_to_the_last),
         cmocka_unit_test(test_a_quarter_ring_has_the_area_of_its_polygon_or_parabolas),
         cmocka_unit_test(test_a_patch_follows_points_by_length),
+        cmocka_unit_test(test_a_corner_that_no_element_meets_is_warned_of),
         cmocka_unit_test(test_a_folded_patch_is_refused),
         cmocka_unit_test(test_holes_and_bays_have_chains_of_their_own),
         cmocka_unit_test(test_sets_of_places_hold_the_nodes_and_faces_meant),

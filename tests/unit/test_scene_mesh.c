@@ -289,6 +289,29 @@ static void test_a_grid_is_asked_for_only_where_something_looks_at_it(void **sta
     forget(&o);
 }
 
+static void test_a_patch_reaches_as_far_as_its_arcs(void **state) {
+    (void)state;
+    /* bottom bulges downwards to y = 1 - sqrt(2), beyond its ends at y = 0 */
+    static const char patch[] = "{patch: {bottom: {arc: {from: [0, 0], to: [2, 0], center: [1, 1]}}, right: [[2, 0], [2, 1]], top: [[0, "
+                                "1], [2, 1]], left: [[0, 0], [0, 1]]}, elements: [4, 4]}";
+    static const char soil[] = "  soil: {method: material-points, material: steel, shape: {box: [[0, -1], [2, %g]]}}\n  punch:\n";
+    for (int k = 0; k < 2; k++) {
+        char text[200], all[sizeof base + 1000];
+        snprintf(text, sizeof text, soil, k == 0 ? 1 - sqrt(2.0) + 1e-3 : 1 - sqrt(2.0) - 1e-3);
+        const char *mesh = strstr(base, "{box: [[0, 0]"), *rest = strchr(mesh, '\n'), *punch = strstr(base, "  punch:\n"),
+                   *time = strstr(base, "time: {");
+        snprintf(all, sizeof all, "%.*s" GRID "%.*s%s%.*s%s%s", (int)(time - base), base, (int)(mesh - time - 7), time + 7, patch,
+                 (int)(punch - rest), rest, text, punch + 9);
+        outcome o = read_bytes(all, strlen(all), NULL, 0);
+        assert_int_equal(o.status, AB_OK);
+        bool touch = false;
+        for (size_t i = 0; ab_report_text(o.report, i) != NULL; i++)
+            touch = touch || strstr(ab_report_text(o.report, i), "bodies 'beam' and 'soil' touch or overlap") != NULL;
+        assert_int_equal(touch, k == 0);
+        forget(&o);
+    }
+}
+
 static void test_forces_at_places_of_material_points_are_refused(void **state) {
     (void)state;
     outcome o = read_with("  punch:\n", "  soil: {method: material-points, material: steel, shape: {box: [[0, -1], [3, 0]]}}\n  punch:\n",
@@ -408,6 +431,7 @@ int main(void) {
         cmocka_unit_test(test_rigid_bodies_in_their_other_forms),
         cmocka_unit_test(test_each_mistake_is_said_at_its_place_with_its_remedy),
         cmocka_unit_test(test_a_grid_is_asked_for_only_where_something_looks_at_it),
+        cmocka_unit_test(test_a_patch_reaches_as_far_as_its_arcs),
         cmocka_unit_test(test_forces_at_places_of_material_points_are_refused),
         cmocka_unit_test(test_doubtful_choices_are_warned_of),
         cmocka_unit_test(test_a_method_may_be_set_from_outside),
