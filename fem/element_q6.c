@@ -2,7 +2,7 @@
  * 1973) in the form of Taylor, Beresford and Wilson (1976): their gradients go by the Jacobian at the centre, (J0/J) J0^-T grad N, so
  * that they do no work on constant stress and the patch test holds for every shape.
  *
- * The modes keep no state. In each step their increments are those that an elastic element would take, and bring back half of what is
+ * The modes keep no state. In each step their increments are those that an elastic element would take (by strains without the element's rotation), and bring back half of what is
  * left of the residual sum V_q sigma_q G at the start: half, because a material that has grown more than twice as stiff as at its
  * beginning would otherwise be led beyond the mark in every step. */
 #include "fem/element_inner.h"
@@ -34,6 +34,11 @@ static inline void strain(fem_block *block, const fem_elastic *elastic, int firs
                        y = fem_bilinear_sum(&x, &u, 1);
     const fem_jacobian j0 = fem_bilinear_at(&x, 0, 0);
     const lanes det0 = fem_det(j0), r0 = 1.0 / det0;
+    /* the rotation of the element in this step; 1 - cosine without cancellation */
+    const fem_jacobian centre = fem_gradient(fem_bilinear_at(&u, 0, 0), j0, r0);
+    lanes cosine, sine;
+    fem_frame((fem_jacobian){1.0 + centre.xx, centre.xy, centre.yx, 1.0 + centre.yy}, &cosine, &sine);
+    const lanes below = sine * sine / (1.0 + cosine);
     const lanes gx[2] = {j0.yy * r0, -j0.yx * r0}, gy[2] = {-j0.xy * r0, j0.xx * r0}; /* J0^-T of the two directions */
     fem_jacobian h[4];
     lanes ratio[4], same = {0}, mixed = {0}, area = {0}, r[4] = {{0}};
@@ -49,10 +54,11 @@ static inline void strain(fem_block *block, const fem_elastic *elastic, int firs
         lanes_store(block->volume[q] + first, end);
         area += end;
         /* what the modes feel: the stress that an elastic element without them would gain, and what was left over */
-        const lanes pressure = lambda * (h[q].xx + h[q].yy);
-        const lanes xx = pressure + 2 * mu * h[q].xx + RETURN * lanes_load(block->stress[q][0] + first);
-        const lanes yy = pressure + 2 * mu * h[q].yy + RETURN * lanes_load(block->stress[q][1] + first);
-        const lanes xy = mu * (h[q].xy + h[q].yx) + RETURN * lanes_load(block->stress[q][3] + first);
+        const lanes exx = cosine * h[q].xx + sine * h[q].yx - below, eyy = cosine * h[q].yy - sine * h[q].xy - below;
+        const lanes exy = cosine * (h[q].xy + h[q].yx) + sine * (h[q].yy - h[q].xx), pressure = lambda * (exx + eyy);
+        const lanes xx = pressure + 2 * mu * exx + RETURN * lanes_load(block->stress[q][0] + first);
+        const lanes yy = pressure + 2 * mu * eyy + RETURN * lanes_load(block->stress[q][1] + first);
+        const lanes xy = mu * exy + RETURN * lanes_load(block->stress[q][3] + first);
         for (int m = 0; m < 2; m++) {
             const lanes w = (-2 * PLACE[q][m]) * det0;
             r[2 * m] -= w * (xx * gx[m] + xy * gy[m]);
@@ -70,6 +76,11 @@ static inline void strain(fem_block *block, const fem_elastic *elastic, int firs
             if (m != n) k[2 * m][2 * n + 1] = w * (lambda * gx[m] * gy[n] + mu * gy[m] * gx[n]);
         }
     solve_modes(k, r);
+    for (int m = 0; m < 4; m += 2) { /* and turned with the element */
+        const lanes x_ = r[m], y_ = r[m + 1];
+        r[m] = cosine * x_ - sine * y_;
+        r[m + 1] = sine * x_ + cosine * y_;
+    }
     for (int q = 0; q < 4; q++) {
         const lanes a = (-2 * PLACE[q][0]) * ratio[q], b = (-2 * PLACE[q][1]) * ratio[q];
         lanes_store(block->h[q][0] + first, h[q].xx + a * r[0] * gx[0] + b * r[2] * gx[1]);
