@@ -327,8 +327,11 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
     if (sum.points || !nodes) ab_text_add(text, "%zu points, ", sum.points);
     if (nodes) ab_text_add(text, "%zu nodes, %zu elements, ", nodes, sum.elements);
     add_bytes(text, sum.bytes);
-    ab_text_add(text, ", %d thread%s\n  dt %.4g s; the stable limit is %.4g s: %s\n", options->threads, options->threads == 1 ? "" : "s",
-                schedule->dt, schedule->critical_dt, schedule->limit);
+    ab_text_add(text, ", %d thread%s\n  dt %.4g s; ", options->threads, options->threads == 1 ? "" : "s", schedule->dt);
+    if (isfinite(schedule->critical_dt))
+        ab_text_add(text, "the stable limit is %.4g s: %s\n", schedule->critical_dt, schedule->limit);
+    else
+        ab_text_add(text, "there is no stable limit: rigid bodies have no waves\n");
     const double spring = contact_dt(schedule, &limit);
     if (isfinite(spring)) ab_text_add(text, "  contact alone allows %.4g s: %s\n", spring, limit);
     ab_text_add(text, "  %.0f steps", steps_of(schedule));

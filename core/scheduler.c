@@ -85,6 +85,13 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
     s->dt = choose_dt(s);
+    if (!(scene->time_dt > 0.0) && isinf(s->critical_dt)) {
+        ab_schedule_destroy(s);
+        return ab_report_error(
+            report, scene->mark_time,
+            "time: nothing in this scene limits the step, as rigid bodies have no waves; write time.dt, a small part of the "
+            "time in which they move by their size");
+    }
     if (scene->time_end / s->dt > MOST_STEPS) {
         const double dt = s->dt;
         ab_schedule_destroy(s);
@@ -172,8 +179,8 @@ static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_rep
 static void warn_of_dt(ab_schedule *s, ab_report *report) {
     if (s->warned || !(s->scene->time_dt > s->critical_dt)) return;
     s->warned = true;
-    ab_report_warning(report, s->scene->mark_time, "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", s->time,
-                      s->scene->time_dt, s->critical_dt, s->limit);
+    ab_report_warning(report, s->scene->mark_time, "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
+                      s->time, s->scene->time_dt, s->critical_dt, s->limit);
 }
 
 /* What contact finders had to leave undecided. */
@@ -181,11 +188,12 @@ static void warn_of_failures(const ab_schedule *s, ab_report *report) {
     const ab_contact_totals *totals = s->interaction ? s->interaction->totals(s->interaction) : NULL;
     for (size_t c = 0; totals && c < s->scene->contact_count; ++c)
         if (totals[c].failures > 0)
-            ab_report_warning(report, s->scene->contacts[c].mark,
-                              "contact of '%s' and '%s': %zu places could not be decided and were passed over (summary.json: failures); look "
-                              "for faces that have no length or are strongly bent",
-                              s->scene->bodies[s->scene->contacts[c].body[0]].name, s->scene->bodies[s->scene->contacts[c].body[1]].name,
-                              totals[c].failures);
+            ab_report_warning(
+                report, s->scene->contacts[c].mark,
+                "contact of '%s' and '%s': %zu places could not be decided and were passed over (summary.json: failures); look "
+                "for faces that have no length or are strongly bent",
+                s->scene->bodies[s->scene->contacts[c].body[0]].name, s->scene->bodies[s->scene->contacts[c].body[1]].name,
+                totals[c].failures);
 }
 
 ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
@@ -312,7 +320,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
                           .plan_json = plan_json.failed ? NULL : plan_json.bytes};
     char outcome[256];
     if (status != AB_OK) {
-        const char *why = ab_report_text(report, 0);
+        const char *why = ab_report_first_error(report);
         snprintf(outcome, sizeof outcome, "failed: %s", why ? why : "no reason given");
         facts.outcome = outcome;
     } else if (stop_signal) {
