@@ -14,6 +14,7 @@ typedef struct line {
     size_t file; /* order in which the file was first named; SIZE_MAX: no file */
     int line, column;
     size_t order;
+    bool error; /* or a warning */
 } line;
 
 struct ab_report {
@@ -62,7 +63,7 @@ static size_t file_order(ab_report *report, const char *file) {
 }
 
 /* Appends one line; a line that is there already (same place, same text) is not said twice. True when it is new. */
-static bool keep(ab_report *report, ab_mark mark, const char *text) {
+static bool keep(ab_report *report, ab_mark mark, bool error, const char *text) {
     if (report->count >= MOST_LINES) {
         report->dropped++;
         return true;
@@ -78,7 +79,7 @@ static bool keep(ab_report *report, ab_mark mark, const char *text) {
     }
     char *copy = strdup(text);
     if (copy == NULL) return true;
-    report->lines[report->count++] = (line){copy, file_order(report, mark.file), mark.line, mark.column, report->next++};
+    report->lines[report->count++] = (line){copy, file_order(report, mark.file), mark.line, mark.column, report->next++, error};
     report->sorted = false;
     return true;
 }
@@ -97,7 +98,7 @@ static void add(ab_report *report, ab_mark mark, const char *kind, size_t *count
     for (char *c = text; *c != '\0'; c++) /* one line each, and nothing that moves the cursor of a terminal */
         if ((unsigned char)*c < 32 || *c == 127) *c = ' ';
     pthread_mutex_lock(&report->lock);
-    if (keep(report, mark, text)) ++*counter;
+    if (keep(report, mark, counter == &report->errors, text)) ++*counter;
     pthread_mutex_unlock(&report->lock);
 }
 
@@ -145,6 +146,17 @@ const char *ab_report_text(const ab_report *report, size_t item) {
     pthread_mutex_lock(&own->lock);
     sort(own);
     const char *text = item < own->count ? own->lines[item].text : NULL;
+    pthread_mutex_unlock(&own->lock);
+    return text;
+}
+
+const char *ab_report_first_error(const ab_report *report) {
+    const char *text = NULL;
+    ab_report *own = (ab_report *)(size_t)report;
+    pthread_mutex_lock(&own->lock);
+    sort(own);
+    for (size_t i = 0; i < own->count && text == NULL; i++)
+        if (own->lines[i].error) text = own->lines[i].text;
     pthread_mutex_unlock(&own->lock);
     return text;
 }

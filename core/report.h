@@ -33,6 +33,7 @@ void ab_report_warning(ab_report *report, ab_mark mark, const char *format, ...)
 size_t ab_report_errors(const ab_report *report); /* errors and failures so far */
 size_t ab_report_warnings(const ab_report *report);
 const char *ab_report_text(const ab_report *report, size_t item); /* item-th line, in order of place; NULL past the end */
+const char *ab_report_first_error(const ab_report *report);       /* the same of the first line that is no warning; NULL without */
 
 /* Prints all lines, sorted by file order and place, errors and warnings; then forgets them (the counts stay). */
 void ab_report_print(ab_report *report, FILE *stream);
