@@ -94,7 +94,7 @@ static v8 real_lanes(const fem_body *body, size_t number) {
 void fem_batch_settle(const fem_batch *batch, const fem_body *body, size_t number, fem_block *block, size_t at, fem_sums *sums) {
     const fem_rows rows = body->rows;
     const v8 zero = v8_set(0.0);
-    v8 work = v8_load(block->control_work), first = work, plastic = zero, travelled = zero, stiffest = zero;
+    v8 work = v8_load(block->control_work), first = v8_load(block->control_first), plastic = zero, travelled = zero, stiffest = zero;
     for (int q = 0; q < body->element->gauss; ++q, at += 8) {
         double *point = fem_gauss_rows(body, number, q);
         const v8 volume0 = v8_load(block->volume0[q]), volume = v8_load(block->volume[q]);

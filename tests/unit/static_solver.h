@@ -64,12 +64,12 @@ static inline void elastic_step(const static_model *m, const double (*x)[8], con
     m->element->force(block, m->f_bar);
 }
 
-/* Stiffness of eight elements about rest: k[i][j][lane], by central differences, which are exact where the forces are linear in u. */
+/* Stiffness of eight elements about rest: k[i][j][lane], by central differences, exact where the forces are linear in u (those of q6 are, but for the turn of its modes). */
 static inline void element_stiffness(const static_model *m, const double (*x)[8], double (*k)[MOST_DOFS][8]) {
     const int n = 2 * m->element->nodes;
     double size = 0;
     for (int i = 2; i < 8; i++) size = fmax(size, fabs(x[i][0] - x[i % 2][0]));
-    const double step = 1e-5 * size;
+    const double step = 1e-6 * size;
     for (int j = 0; j < n; j++) {
         fem_block plus, minus;
         double u[MOST_DOFS][8] = {{0}};
