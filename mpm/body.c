@@ -35,6 +35,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
+    mpm_outline_destroy(body->outline);
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
 
@@ -68,6 +69,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
 static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report) {
     mpm_loads_follow(body, step);
+    mpm_outline_follow(body, step);
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
                            (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) && step->number % WAVE_SPEED_EVERY == 0;
     int failed = 0;
@@ -194,6 +196,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
         if (body->tiles[k].patch >= 0) body->kernel->finish(body, k, step, remap, body->sums + k);
+    AB_TRY(mpm_outline_move(body, step, report));
     AB_TRY(close_step(body, step, report));
     if (body->update == MPM_USL) mpm_grid_limit_light(body);
     return AB_OK;
@@ -279,7 +282,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
                body->patch_capacity * 8 * PATCH_DOUBLES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
-               (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + sizeof *body;
+               (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
@@ -290,18 +293,19 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
         snprintf(p->fields + used, sizeof p->fields - used, ", %s", class_->state[s].name);
     }
     if (body->birth) strncat(p->fields, ", initial position", sizeof p->fields - strlen(p->fields) - 1);
-    snprintf(p->passes, sizeof p->passes, "%s%s",
+    if (body->outline) strncat(p->fields, ", outline", sizeof p->fields - strlen(p->fields) - 1);
+    snprintf(p->passes, sizeof p->passes, "%s%s%s",
              body->update == MPM_MUSL  ? "points to grid, grid, grid to points and back, grid, stress"
              : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
-             body->load_count ? ", tractions" : "");
+             body->load_count ? ", tractions" : "", body->outline ? ", outline" : "");
 }
 
 /* The three updates differ in one entry: USF strains early, MUSL maps velocities back, USL does neither. */
 #define SAME_IN_ALL                                                                                                                        \
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
-    .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = plan
+    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = plan
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
@@ -366,6 +370,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     if ((size_t)body->threads > busy) body->threads = (int)busy;
     if (status == AB_OK) status = mpm_material_start(body, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
+    if (status == AB_OK) status = mpm_outline_create(body, fill, report);
     if (status == AB_OK && wants_birth(body)) {
         body->birth = malloc(2 * fill->count * sizeof *body->birth);
         if (!body->birth) status = ab_report_failure(report, "no memory for the initial places of body '%s'", spec->name);

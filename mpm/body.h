@@ -125,7 +125,7 @@ struct mpm_body {
 
     mpm_load *loads;
     size_t load_count;
-    uint32_t *slot; /* by id, block*8 + lane; only with loads */
+    uint32_t *slot; /* by id, block*8 + lane, UINT32_MAX: has left; only with loads or an outline */
 
     ab_energy energy;   /* totals so far */
     double last_strain; /* J: what the last step added to energy.strain */
@@ -137,6 +137,7 @@ struct mpm_body {
     /* what a contact finder was last shown */
     struct mpm_trace *trace;
     struct mpm_surface *surface; /* its points in cells where another body has faces */
+    struct mpm_outline *outline; /* its own faces; NULL unless another body of points looks for them */
     size_t fixed_bytes;
 };
 
@@ -147,6 +148,7 @@ ab_status mpm_create(const ab_scene *, size_t body, int threads, ab_domain **, a
 void mpm_rows_plan(mpm_body *); /* which rows this scene needs */
 ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
 ab_status mpm_points_sort(mpm_body *, ab_report *); /* after begin's bounds were broken, or the first time */
+bool mpm_points_index(mpm_body *);                  /* from now on body->slot says where a point is; false: no memory */
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
 
 /* material.c */
@@ -156,6 +158,8 @@ ab_status mpm_material_start(mpm_body *, ab_report *); /* the material's instanc
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
                           ab_report *);                               /* the tiles of `filled` (ascending) and their neighbours */
 long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key); /* place, or -1 */
+size_t mpm_tile_of_block(const mpm_body *, uint32_t block);           /* that owns it: tiles with points hold ascending runs */
+uint32_t mpm_dof_of(const mpm_tile *, int patch_node);                /* the node's number among the body's dofs */
 
 /* grid.c */
 void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);              /* old velocity, trial velocity */
@@ -178,6 +182,14 @@ void mpm_trace_destroy(struct mpm_trace *);
 /* surface.c */
 ab_status mpm_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_report *);
 void mpm_surface_destroy(struct mpm_surface *);
+
+/* outline.c: the body's faces. No outline: nothing is done, and there are none. */
+ab_status mpm_outline_create(mpm_body *, const ab_fill *, ab_report *);
+ab_status mpm_outline_move(mpm_body *, const ab_step *, ab_report *); /* with the velocities that move the points */
+void mpm_outline_follow(mpm_body *, const ab_step *);                 /* with the velocities that strain them, before they are strained */
+ab_status mpm_faces(ab_domain *, ab_surface *, ab_report *);
+size_t mpm_outline_bytes(const struct mpm_outline *);
+void mpm_outline_destroy(struct mpm_outline *);
 
 /* fields.c */
 ab_status mpm_fields_create(mpm_body *, ab_report *);

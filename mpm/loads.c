@@ -37,33 +37,12 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
         if (count == 0) return AB_OK;
         if (!pass) {
             body->loads = malloc(count * sizeof *body->loads);
-            body->slot = malloc((body->born + 1) * sizeof *body->slot);
-            if (!body->loads || !body->slot)
+            if (!body->loads || !mpm_points_index(body))
                 return ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
         }
     }
     body->load_count = count;
-    for (size_t slot = 0; slot < body->block_count * 8; ++slot)
-        if (body->ids[slot] != UINT64_MAX) body->slot[body->ids[slot]] = (uint32_t)slot;
     return AB_OK;
-}
-
-/* Tile that owns a block: tiles with points hold ascending runs. */
-static size_t tile_of_block(const mpm_body *body, uint32_t block) {
-    size_t low = 0, high = body->tile_count;
-    size_t found = 0;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        size_t filled = middle;
-        while (filled < high && body->tiles[filled].patch < 0) ++filled;
-        if (filled == high)
-            high = middle;
-        else if (body->tiles[filled].first <= block)
-            found = filled, low = filled + 1;
-        else
-            high = middle;
-    }
-    return found;
 }
 
 typedef struct reach {
@@ -94,7 +73,7 @@ static void average_hats(double s, double l, double n[3]) {
 static reach reach_of(const mpm_body *body, const mpm_load *load) {
     const uint32_t slot = body->slot[load->id];
     reach r = {.count = 0};
-    r.tile = body->tiles + tile_of_block(body, slot / 8);
+    r.tile = body->tiles + mpm_tile_of_block(body, slot / 8);
     mpm_weights w;
     const double *block = mpm_block(body, slot / 8);
     body->kernel->weights(body, r.tile, block, &w);
@@ -115,14 +94,6 @@ static reach reach_of(const mpm_body *body, const mpm_load *load) {
             r.node[r.count++] = (size_t)(w.node[l] + j * PATCH + i);
         }
     return r;
-}
-
-/* The record of a patch's node, where its tile keeps it. */
-static const double *own_of(const mpm_body *body, const mpm_tile *tile, size_t node) {
-    const int pi = (int)(node % PATCH) - 1, pj = (int)(node / PATCH) - 1;
-    const int dx = pi < 0 ? -1 : pi >= AB_TILE ? 1 : 0, dy = pj < 0 ? -1 : pj >= AB_TILE ? 1 : 0;
-    const int32_t from = tile->around[(dy + 1) * 3 + dx + 1];
-    return body->own + ((size_t)from * AB_TILE_NODES + (size_t)((pj - dy * AB_TILE) * AB_TILE + pi - dx * AB_TILE)) * OWN_RECORD;
 }
 
 static void load_force(const mpm_body *body, const mpm_load *load, double time, double force[2]) {
@@ -148,7 +119,7 @@ void mpm_loads_work(mpm_body *body, const ab_step *step) {
         load_force(body, body->loads + k, step->time + 0.5 * step->dt, force);
         const reach r = reach_of(body, body->loads + k);
         for (int i = 0; i < r.count; ++i) {
-            const double *own = own_of(body, r.tile, r.node[i]);
+            const double *own = body->own + (size_t)mpm_dof_of(r.tile, (int)r.node[i]) * OWN_RECORD;
             for (int c = 0; c < 2; ++c)
                 body->energy.external += step->dt * r.n[i] * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
         }
@@ -164,7 +135,7 @@ void mpm_loads_follow(mpm_body *body, const ab_step *step) {
         const reach r = reach_of(body, load);
         double arm[2] = {load->arm[0], load->arm[1]}, half[2] = {load->half[0], load->half[1]};
         for (int i = 0; i < r.count; ++i) {
-            const double *own = own_of(body, r.tile, r.node[i]);
+            const double *own = body->own + (size_t)mpm_dof_of(r.tile, (int)r.node[i]) * OWN_RECORD;
             const double along_arm = step->dt * (r.g[i][0] * load->arm[0] + r.g[i][1] * load->arm[1]);
             const double along_half = step->dt * (r.g[i][0] * load->half[0] + r.g[i][1] * load->half[1]);
             for (int c = 0; c < 2; ++c) {

@@ -145,6 +145,19 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
     return AB_OK;
 }
 
+static void index_points(mpm_body *body) {
+    memset(body->slot, 0xff, body->born * sizeof *body->slot);
+    for (size_t slot = 0; slot < body->block_count * 8; ++slot)
+        if (body->ids[slot] != UINT64_MAX) body->slot[body->ids[slot]] = (uint32_t)slot;
+}
+
+bool mpm_points_index(mpm_body *body) {
+    if (body->slot) return true;
+    body->slot = malloc((body->born + 1) * sizeof *body->slot);
+    if (body->slot) index_points(body);
+    return body->slot != NULL;
+}
+
 /* ---- sorting ------------------------------------------------------------------------------------------------------------ */
 
 /* For each point of an old tile: which of the nine tiles around it now holds it, and in which cell. */
@@ -277,11 +290,7 @@ ab_status mpm_points_sort(mpm_body *body, ab_report *report) {
     body->spare_capacity = capacity;
     body->block_count = blocks;
     body->sort_due = false;
-    if (body->slot) {
-        memset(body->slot, 0xff, body->born * sizeof *body->slot);
-        for (size_t slot = 0; slot < blocks * 8; ++slot)
-            if (body->ids[slot] != UINT64_MAX) body->slot[body->ids[slot]] = (uint32_t)slot;
-    }
+    if (body->slot) index_points(body);
 out:
     free(old_tiles), free(old_keys), free(filled), free(counts), free(moves), free(sources);
     return status;

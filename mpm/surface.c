@@ -112,13 +112,6 @@ static bool cells_around(const mpm_body *body, const mpm_tile *tile, const ab_re
     return last[0] >= 0;
 }
 
-/* Number of a patch's node among the body's dofs; its record. */
-static uint32_t dof_of(const mpm_tile *tile, int patch_node) {
-    const int i = patch_node % PATCH - 1, j = patch_node / PATCH - 1;
-    const int dx = i < 0 ? -1 : i >= AB_TILE ? 1 : 0, dy = j < 0 ? -1 : j >= AB_TILE ? 1 : 0;
-    return (uint32_t)tile->around[(dy + 1) * 3 + dx + 1] * AB_TILE_NODES + (uint32_t)((j - dy * AB_TILE) * AB_TILE + i - dx * AB_TILE);
-}
-
 /* Adds the point in lane l of a block. Weights are the basis' own: they add up to 1, and a node with weight has mass. */
 static void add_point(mpm_body *body, const mpm_tile *tile, const double *block, int l, uint64_t id, const mpm_weights *w) {
     struct mpm_surface *s = body->surface;
@@ -134,7 +127,7 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
         for (int i = 0; i < nodes; ++i) {
             const double value = w->n[0][i][l] * w->n[1][j][l];
             if (!(value > 0.0)) continue;
-            const uint32_t dof = dof_of(tile, w->node[l] + j * PATCH + i);
+            const uint32_t dof = mpm_dof_of(tile, w->node[l] + j * PATCH + i);
             if (!(body->own[(size_t)dof * OWN_RECORD + OWN_MASS] > 0.0)) continue;
             s->dof[at] = dof;
             s->weight[at++] = value;

@@ -76,3 +76,26 @@ ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, 
     ++body->version;
     return AB_OK;
 }
+
+size_t mpm_tile_of_block(const mpm_body *body, uint32_t block) {
+    size_t low = 0, high = body->tile_count;
+    size_t found = 0;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        size_t filled = middle;
+        while (filled < high && body->tiles[filled].patch < 0) ++filled;
+        if (filled == high)
+            high = middle;
+        else if (body->tiles[filled].first <= block)
+            found = filled, low = filled + 1;
+        else
+            high = middle;
+    }
+    return found;
+}
+
+uint32_t mpm_dof_of(const mpm_tile *tile, int patch_node) {
+    const int i = patch_node % PATCH - 1, j = patch_node / PATCH - 1;
+    const int dx = i < 0 ? -1 : i >= AB_TILE ? 1 : 0, dy = j < 0 ? -1 : j >= AB_TILE ? 1 : 0;
+    return (uint32_t)tile->around[(dy + 1) * 3 + dx + 1] * AB_TILE_NODES + (uint32_t)((j - dy * AB_TILE) * AB_TILE + i - dx * AB_TILE);
+}

@@ -1,0 +1,200 @@
+/* outline.c: the faces of a material-point body: loops of vertices along its outline, which move with the velocities of the grid as the points do.
+ *
+ * A vertex hangs on the four nodes of its cell by hat functions. Nodes that hardly carry mass have velocities of no meaning (a finite stress on next to no
+ * mass): their weight fades with their mass, and the others take it over. What a finder learns of a vertex' velocity is what moves it.
+ *
+ * Nothing holds such a vertex to its place on the body, and over many turns it would creep along the outline (by 0.15 of a cell a turn, and the corners with it).
+ * So each has an arm from the point under it, which stretches and turns as that point's domain does, and is drawn to the arm's end: the faster, the faster
+ * the material deforms, so that bodies that move without deforming move their faces exactly. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mpm/body.h"
+#include "mpm/outline.h"
+
+enum { NODES = 4 };
+static const double SPACING = 0.5;                   /* of a cell, between vertices */
+static const double SHORTEST = 0.125, LONGEST = 1.0; /* of a cell; faces that get shorter or longer are joined or divided */
+static const double DRAWN = 3.0; /* times the displacement gradient of a step: share by which a vertex nears its arm's end */
+static const double FULL = 0.1;  /* of a point's mass: nodes with less fade */
+
+struct mpm_outline {
+    mpm_loops loops;
+    size_t capacity, ld;
+    double *position; /* rows of ld */
+    size_t *start;
+    uint32_t *dof;
+    double *weight;
+    uint32_t *vertex, *beside; /* of the faces */
+};
+
+void mpm_outline_destroy(struct mpm_outline *o) {
+    if (!o) return;
+    mpm_loops_clear(&o->loops);
+    free(o->position), free(o->start), free(o->dof), free(o->weight), free(o->vertex), free(o->beside), free(o);
+}
+
+size_t mpm_outline_bytes(const struct mpm_outline *o) {
+    return o ? sizeof *o + o->loops.capacity * 45 + o->capacity * (16 + 8 + NODES * 12 + 20) : 0;
+}
+
+/* Faces are wanted where a finder looks at surfaces and the other body is made of points too; any other body brings faces of its own. */
+static bool wants_faces(const mpm_body *body) {
+    const ab_scene *scene = body->scene;
+    for (size_t k = 0; k < scene->contact_count; ++k) {
+        const ab_contact_spec *contact = scene->contacts + k;
+        const size_t own = body->domain.index;
+        if (!(contact->finder->class_.needs & AB_NEED_SURFACE) || (contact->body[0] != own && contact->body[1] != own)) continue;
+        const size_t other = contact->body[contact->body[0] == own];
+        if (!strcmp(scene->bodies[other].method, body->domain.ops->method)) return true;
+    }
+    return false;
+}
+
+ab_status mpm_outline_create(mpm_body *body, const ab_fill *fill, ab_report *report) {
+    if (!wants_faces(body)) return AB_OK;
+    body->outline = calloc(1, sizeof *body->outline);
+    if (!body->outline) return ab_report_failure(report, "body '%s': no memory for its outline", body->domain.spec->name);
+    mpm_loops *loops = &body->outline->loops;
+    if (!mpm_points_index(body)) return ab_report_failure(report, "body '%s': no memory for its outline", body->domain.spec->name);
+    AB_TRY(mpm_loops_create(fill, SPACING * body->h, body->domain.spec->name, loops, report));
+    for (size_t k = 0; k < loops->count; ++k)
+        for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] -= body->origin[c];
+    return AB_OK;
+}
+
+static bool grow(void *pointer, size_t count, size_t size) {
+    void **p = pointer, *more = realloc(*p, count * size);
+    if (more) *p = more;
+    return more != NULL;
+}
+
+static bool reserve(struct mpm_outline *o) {
+    const size_t count = o->loops.count;
+    if (count <= o->capacity) return true;
+    const size_t n = (count + count / 2 + 8) / 8 * 8;
+    if (!grow(&o->position, 2 * n, sizeof(double)) || !grow(&o->start, n + 1, sizeof *o->start) ||
+        !grow(&o->dof, NODES * n, sizeof *o->dof) || !grow(&o->weight, NODES * n, sizeof(double)) ||
+        !grow(&o->vertex, 3 * n, sizeof *o->vertex) || !grow(&o->beside, 2 * n, sizeof *o->beside))
+        return false;
+    o->capacity = o->ld = n;
+    return true;
+}
+
+/* The nodes of a vertex and their weights, which add up to 1; their number, 0 where no node around has mass. */
+static int stencil_of(const mpm_body *body, const double x[2], uint32_t dof[NODES], double weight[NODES]) {
+    const double cell[2] = {floor(x[0] * body->inverse_h), floor(x[1] * body->inverse_h)};
+    const double s = x[0] * body->inverse_h - cell[0], t = x[1] * body->inverse_h - cell[1];
+    const double hat[NODES] = {(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t};
+    int count = 0;
+    double sum = 0.0;
+    for (int n = 0; n < NODES; ++n) {
+        const int32_t i = (int32_t)cell[0] + n % 2, j = (int32_t)cell[1] + n / 2;
+        const int32_t tx = (i - (i & (AB_TILE - 1))) / AB_TILE, ty = (j - (j & (AB_TILE - 1))) / AB_TILE;
+        const long tile = mpm_tile_find(body->keys, body->tile_count, ab_tile_key(tx, ty));
+        if (tile < 0) continue;
+        const uint32_t k = (uint32_t)tile * AB_TILE_NODES + (uint32_t)((j & (AB_TILE - 1)) * AB_TILE + (i & (AB_TILE - 1)));
+        const double mass = body->own[(size_t)k * OWN_RECORD + OWN_MASS];
+        const double w = hat[n] * fmin(mass / (FULL * body->point_mass), 1.0);
+        if (!(w > 0.0)) continue;
+        dof[count] = k;
+        weight[count++] = w;
+        sum += w;
+    }
+    for (int n = 0; n < count; ++n) weight[n] /= sum;
+    return count;
+}
+
+static ab_status lost(const mpm_body *body, const double x[2], ab_report *report) {
+    return ab_report_failure(report,
+                             "body '%s': its outline has lost its points near (%.6g, %.6g) m; faces of material points need a body that "
+                             "stays in one piece: use a smaller dt, or an algorithm that needs no faces (multi-velocity)",
+                             body->domain.spec->name, x[0] + body->origin[0], x[1] + body->origin[1]);
+}
+
+ab_status mpm_outline_move(mpm_body *body, const ab_step *step, ab_report *report) {
+    struct mpm_outline *o = body->outline;
+    if (!o) return AB_OK;
+    mpm_loops *loops = &o->loops;
+    for (size_t k = 0; k < loops->count; ++k) {
+        uint32_t dof[NODES];
+        double weight[NODES], v[2] = {0.0, 0.0};
+        const int count = stencil_of(body, loops->x + 2 * k, dof, weight);
+        if (count == 0) return lost(body, loops->x + 2 * k, report);
+        for (int n = 0; n < count; ++n)
+            for (size_t c = 0; c < 2; ++c) v[c] += weight[n] * body->own[(size_t)dof[n] * OWN_RECORD + OWN_VELOCITY + c];
+        for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] += step->dt * v[c];
+    }
+    return mpm_loops_even(loops, SHORTEST * body->h, LONGEST * body->h, body->domain.spec->name, report);
+}
+
+/* Displacement gradient of the step at a point, H_ij = dt dv_i/dx_j, from the velocities that the nodes have now. */
+static void gradient_at(const mpm_body *body, uint32_t slot, double dt, double gradient[2][2]) {
+    const mpm_tile *tile = body->tiles + mpm_tile_of_block(body, slot / 8);
+    const int l = (int)(slot % 8), nodes = body->kernel->nodes;
+    mpm_weights w;
+    body->kernel->weights(body, tile, mpm_block(body, slot / 8), &w);
+    for (int c = 0; c < 2; ++c) gradient[c][0] = gradient[c][1] = 0.0;
+    for (int j = 0; j < nodes; ++j)
+        for (int i = 0; i < nodes; ++i) {
+            const double *own = body->own + (size_t)mpm_dof_of(tile, w.node[l] + j * PATCH + i) * OWN_RECORD;
+            const double gx = dt * w.g[0][i][l] * w.n[1][j][l], gy = dt * w.n[0][i][l] * w.g[1][j][l];
+            for (int c = 0; c < 2; ++c) {
+                gradient[c][0] += gx * own[OWN_VELOCITY + c];
+                gradient[c][1] += gy * own[OWN_VELOCITY + c];
+            }
+        }
+}
+
+void mpm_outline_follow(mpm_body *body, const ab_step *step) {
+    if (!body->outline) return;
+    mpm_loops *loops = &body->outline->loops;
+    for (size_t k = 0; k < loops->count; ++k) {
+        const uint32_t slot = body->slot[loops->point[k]];
+        if (slot == UINT32_MAX) continue; /* the point has left through a side of the grid */
+        double g[2][2], size = 0.0;
+        gradient_at(body, slot, step->dt, g);
+        double *arm = loops->arm + 2 * k, *x = loops->x + 2 * k;
+        const double old[2] = {arm[0], arm[1]}, *point = mpm_block(body, slot / 8) + slot % 8;
+        for (int c = 0; c < 2; ++c) {
+            arm[c] += g[c][0] * old[0] + g[c][1] * old[1];
+            size += g[c][0] * g[c][0] + g[c][1] * g[c][1];
+        }
+        const double share = fmin(DRAWN * sqrt(size), 1.0);
+        for (int c = 0; c < 2; ++c) x[c] += share * (point[8 * (ROW_NEXT + c)] + arm[c] - x[c]);
+    }
+}
+
+ab_status mpm_faces(ab_domain *domain, ab_surface *surface, ab_report *report) {
+    mpm_body *body = (mpm_body *)domain;
+    struct mpm_outline *o = body->outline;
+    surface->vertex_count = surface->face_count = 0;
+    if (!o) return AB_OK;
+    const mpm_loops *loops = &o->loops;
+    if (!reserve(o)) return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
+    o->start[0] = 0;
+    for (size_t k = 0; k < loops->count; ++k) {
+        const double *x = loops->x + 2 * k;
+        const size_t at = o->start[k];
+        const int count = stencil_of(body, x, o->dof + at, o->weight + at);
+        if (count == 0) return lost(body, x, report);
+        o->start[k + 1] = at + (size_t)count;
+        o->position[k] = x[0];
+        o->position[o->ld + k] = x[1];
+        o->vertex[3 * k] = (uint32_t)k;
+        o->vertex[3 * k + 1] = loops->next[k];
+        o->vertex[3 * k + 2] = UINT32_MAX;
+        o->beside[2 * k] = loops->prior[k]; /* face k begins at vertex k */
+        o->beside[2 * k + 1] = loops->next[k];
+    }
+    surface->vertex_count = surface->face_count = loops->count;
+    surface->vertex_ld = o->ld;
+    surface->vertex_position = o->position;
+    surface->vertex_start = o->start;
+    surface->vertex_dof = o->dof;
+    surface->vertex_weight = o->weight;
+    surface->face_vertex = o->vertex;
+    surface->face_beside = o->beside;
+    return AB_OK;
+}
