@@ -64,8 +64,9 @@ void contact_points_destroy(contact_points *points) {
 
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
  * degrees: the normal's). A normal that is oblique by however little would let normal and tangential answers work on the same freedom, each as if it were
- * alone, and the loop would swing for ever. */
+ * alone, and the loop would swing for ever. Not so where a body that turns as a whole is held: its guide takes the force that an oblique face gives it. */
 static void fit_normal_to_sides(ab_points *v, size_t i, const contact_side side[2]) {
+    if (side[0].dofs.spin || side[1].dofs.spin) return;
     const bool x = contact_all_held(side, i, 0), y = contact_all_held(side, i, 1);
     if (x == y) return;
     double *held = v->normal + (x ? 0 : v->ld) + i, *left = v->normal + (x ? v->ld : 0) + i;
