@@ -78,7 +78,9 @@ static void describe_default(const ab_param *param, char *text, size_t size) {
         const char *start = param->choices;
         for (int place = (int)param->initial; place > 0; place--) start = strchr(start, '|') + 1;
         snprintf(text, size, "default %.*s", (int)strcspn(start, "|"), start);
-    } else
+    } else if (isinf(param->initial)) /* no scene can write it */
+        snprintf(text, size, "optional");
+    else
         snprintf(text, size, "default %g", param->initial);
 }
 

@@ -1,12 +1,18 @@
 /* coulomb.c: answers contact points with Coulomb friction: no approach beyond the gap, no slip below the limit
- * friction * normal impulse + adhesion * area * dt, never more than shear_cap * area * dt. */
+ * friction * normal impulse + adhesion * area * dt, never more than shear_cap * area * dt.
+ *
+ * With kinetic_friction the limit of a point depends on whether it slipped in the last step, not on what the rounds of this step have tried so far: in each round the
+ * law is then that of one coefficient, and the rounds end as they do with one. A point that sticks gives way at the static limit, carries that for the rest of the
+ * step and the kinetic one from the next step on; it sticks again when the kinetic one is enough to hold it. Were the impulse to fall in the round in which
+ * a point gives way, the first of many points that hold a body together would see all of the load, give way, and the others after it. */
 #include "abut_plugin.h"
 
 #include <math.h>
 
 typedef struct coulomb {
     const ab_host *host;
-    double friction, adhesion, shear_cap, tensile_strength;
+    double friction, kinetic, adhesion, shear_cap, tensile_strength;
+    int weakens; /* kinetic < friction */
 } coulomb;
 
 static const ab_param PARAMS[] = {
@@ -14,13 +20,24 @@ static const ab_param PARAMS[] = {
     {"adhesion", "Pa", "shear stress carried without normal force while the bodies touch", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
     {"shear_cap", "Pa", "largest shear stress (alpha s_u); 0: none", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
     {"tensile_strength", "Pa", "tension carried while the bodies touch; needs adhesion", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
+    {"kinetic_friction", "1",
+     "coefficient of friction of a point that slips, at most friction, which then is that of a point that sticks; without it: the same as "
+     "friction",
+     NULL, AB_REAL, 0, INFINITY, 0.0, INFINITY},
+};
+
+static const ab_state STATES[] = {
+    {"slips", "1", "1 where the point slipped in the last step (kept with kinetic_friction)", AB_SCALAR, AB_COPY, 0.0},
 };
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
     if (settings[3].real > 0.0 && !(settings[1].real > 0.0)) return host->message(host->context, "tensile_strength needs adhesion > 0"), -1;
+    if (settings[4].given && settings[4].real > settings[0].real)
+        return host->message(host->context, "kinetic_friction is above friction, which is the static coefficient; it must not be"), -1;
     coulomb *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
-    *law = (coulomb){host, settings[0].real, settings[1].real, settings[2].real, settings[3].real};
+    const double kinetic = fmin(settings[4].real, settings[0].real);
+    *law = (coulomb){host, settings[0].real, kinetic, settings[1].real, settings[2].real, settings[3].real, kinetic < settings[0].real};
     *self = law;
     return 0;
 }
@@ -32,6 +49,7 @@ static void destroy(void *self) {
 
 static const double TOUCH =
     1e-3; /* of a cell: bodies no further apart touch, for adhesion and tension; gaps are no better known than this */
+static const double AT_LIMIT = 1e-9; /* of the limit: what is needed beyond it is rounding, not slip */
 
 static int respond(void *self, ab_points *p, size_t first, size_t count) {
     const coulomb *law = self;
@@ -46,7 +64,8 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         const int touching = gap <= TOUCH * p->cell;
         const double tension = touching ? law->tensile_strength * area_dt : 0.0;
         const double lambda = fmax(-tension, normal_impulse + p->normal_mass[i] * (approach - fmax(gap, 0.0) / p->dt));
-        double limit = law->friction * fmax(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
+        const double friction = law->weakens && p->state0[i] > 0.5 ? law->kinetic : law->friction;
+        double limit = friction * fmax(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
         if (law->shear_cap > 0.0) limit = fmin(limit, law->shear_cap * area_dt);
         double slip[3] = {0}, size = 0.0; /* tangential impulse that would end the slip */
         for (size_t c = 0; c < d; ++c) {
@@ -56,6 +75,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         }
         size = sqrt(size);
         const double scale = size > limit ? limit / size : 1.0;
+        if (law->weakens) p->state1[i] = size > limit * (1.0 + AT_LIMIT) ? 1.0 : 0.0;
         for (size_t c = 0; c < d; ++c) p->impulse[c * ld + i] = lambda * p->normal[c * ld + i] + scale * slip[c];
     }
     return 0;
@@ -68,11 +88,13 @@ static const ab_class CLASS = {
     .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
     .gives = AB_GIVE_IMPULSE,
     .nparam = sizeof PARAMS / sizeof *PARAMS,
+    .nstate = sizeof STATES / sizeof *STATES,
     .name = "coulomb",
-    .help = "no approach beyond the gap; Coulomb friction with adhesion and a shear cap",
+    .help = "no approach beyond the gap; Coulomb friction, static and kinetic, with adhesion and a shear cap",
     .reference = "projected Gauss-Seidel over contact points: Moreau 1999; Jean 1999. Friction between material points: Bardenhagen, "
                  "Brackbill, Sulsky 2000",
     .param = PARAMS,
+    .state = STATES,
     .create = create,
     .destroy = destroy,
     .ops = &OPS,

@@ -11,8 +11,8 @@ enum { OF_MASS, OF_MODULUS };
 
 typedef struct penalty {
     const ab_host *host;
-    double stiffness, damping, friction, tangential;
-    int of;
+    double stiffness, damping, friction, kinetic, tangential;
+    int of, weakens; /* weakens: kinetic < friction */
 } penalty;
 
 static const ab_param PARAMS[] = {
@@ -30,10 +30,15 @@ static const ab_param PARAMS[] = {
      NULL, AB_REAL, 0, 0.0, 0.0, 1.0},
     {"friction", "1", "coefficient of friction", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
     {"tangential", "1", "stiffness across the normal, of that along it", NULL, AB_REAL, AB_MIN_OPEN, 1.0, 0.0, 1.0},
+    {"kinetic_friction", "1",
+     "coefficient of friction of a point that slips, at most friction, which then is that of a point that sticks; without it: the same as "
+     "friction",
+     NULL, AB_REAL, 0, INFINITY, 0.0, INFINITY},
 };
 
 static const ab_state STATES[] = {
     {"elastic_slip", "m", "stretch of the spring across the normal", AB_VECTOR, AB_AVERAGE, 0.0},
+    {"slips", "1", "1 where the point slipped in the last step or was apart (kept with kinetic_friction)", AB_SCALAR, AB_COPY, 0.0},
 };
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
@@ -43,9 +48,12 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
                              "a stiffness above 1 x mass/dt^2 overshoots in a single step where points share nodes; use at most 1, or "
                              "stiffness_of: modulus"),
                -1;
+    if (settings[5].given && settings[5].real > settings[3].real)
+        return host->message(host->context, "kinetic_friction is above friction, which is the static coefficient; it must not be"), -1;
     penalty *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
-    *law = (penalty){host, settings[1].real, settings[2].real, settings[3].real, settings[4].real, of};
+    const double kinetic = fmin(settings[5].real, settings[3].real);
+    *law = (penalty){host, settings[1].real, settings[2].real, settings[3].real, kinetic, settings[4].real, of, kinetic < settings[3].real};
     *self = law;
     return 0;
 }
@@ -54,6 +62,8 @@ static void destroy(void *self) {
     penalty *law = self;
     law->host->release(law->host->context, law);
 }
+
+static const double AT_LIMIT = 1e-9; /* of the limit: what is needed beyond it is rounding, not slip */
 
 /* The stretch of the tangential spring turned with the normal: as long as it was, in the plane that is tangential now. */
 static void turned_slip(const ab_points *p, size_t i, double slip[3]) {
@@ -90,6 +100,7 @@ static void slip_spring(const penalty *law, const ab_points *p, size_t i, double
     }
     size = sqrt(size);
     const double scale = size > limit ? limit / size : 1.0;
+    if (law->weakens) p->state1[d * ld + i] = kept < 1.0 - AT_LIMIT || scale < 1.0 - AT_LIMIT ? 1.0 : 0.0;
     for (size_t c = 0; c < d; ++c) {
         impulse[c] *= scale;
         p->state1[c * ld + i] = slip[c] + dt * (across[c] - impulse[c] / m);
@@ -116,6 +127,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
             lambda += p->impulse[c * ld + i] * p->normal[c * ld + i];
             p->state1[c * ld + i] = 0.0;
         }
+        if (law->weakens) p->state1[d * ld + i] = 1.0; /* bodies that are apart slip; when they meet, until kinetic friction holds them */
         if (depth > 0.0 && m > 0.0) {
             const double k = normal_stiffness(law, p, i), c_dt = 2.0 * law->damping * sqrt(k * m) * dt, old = lambda;
             if (p->stiffness && law->of == OF_MODULUS) p->stiffness[i] = k;
@@ -128,7 +140,8 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
                     across[c] = p->relative_velocity[c * ld + i] - approach * n + (p->impulse[c * ld + i] - old * n) / mt;
                 }
                 const double kt = law->tangential * (law->of == OF_MASS ? k / m * mt : k);
-                slip_spring(law, p, i, kt, law->friction * lambda, across, impulse);
+                const double friction = law->weakens && p->state0[d * ld + i] > 0.5 ? law->kinetic : law->friction;
+                slip_spring(law, p, i, kt, friction * lambda, across, impulse);
             }
         } else
             lambda = 0.0;

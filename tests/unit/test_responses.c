@@ -25,7 +25,7 @@ typedef struct bench { /* one response and room for contact points */
     void *self;
     double position[ROWS * MOST], normal[ROWS * MOST], gap[MOST], area[MOST], velocity[ROWS * MOST], normal_mass[MOST],
         tangential_mass[MOST];
-    double impulse[ROWS * MOST], state0[ROWS * MOST], state1[ROWS * MOST], distance[MOST], stiffness[MOST];
+    double impulse[ROWS * MOST], state0[(ROWS + 1) * MOST], state1[(ROWS + 1) * MOST], distance[MOST], stiffness[MOST];
     ab_points points;
 } bench;
 
@@ -52,6 +52,7 @@ static int create(bench *b, const setting *settings, size_t count) {
         for (uint32_t k = 0; k < class_->nparam; k++)
             if (!strcmp(class_->param[k].name, settings[s].name)) {
                 values[k].real = settings[s].value, values[k].integer = (int64_t)settings[s].value;
+                values[k].given = 1;
                 found = true;
             }
         assert_true(found);
@@ -437,6 +438,94 @@ static void test_penalty_refuses_what_makes_no_sense(void **state) {
     close_bench(b);
 }
 
+/* ---- kinetic friction ----------------------------------------------------------------------------------------------------------------- */
+
+/* A point under a steady normal impulse of 1, pulled across it with what each step says: what it takes, and whether it slips afterwards. */
+static void test_friction_falls_where_a_point_slips_until_it_is_held(void **state) {
+    (void)state;
+    static const struct {
+        double pull, taken;
+        int slips;
+    } step[] = {{0.49, 0.49, 0}, {0.5, 0.5, 0},   {0.51, 0.5, 1}, {0.49, 0.3, 1},  {-0.31, -0.3, 1},
+                {0.3, 0.3, 0},   {0.45, 0.45, 0}, {5, 0.5, 1},    {0.29, 0.29, 0}, {-0.5, -0.5, 0}};
+    bench *b = open_bench("coulomb");
+    const setting settings[] = {{"friction", 0.5}, {"kinetic_friction", 0.3}};
+    assert_int_equal(create(b, settings, 2), 0);
+    const double n[2] = {0.6, 0.8}, m = 1.7;
+    b->points.count = 1;
+    b->normal[0] = n[0], b->normal[MOST] = n[1];
+    b->normal_mass[0] = b->tangential_mass[0] = m;
+    for (size_t k = 0; k < sizeof step / sizeof *step; k++) {
+        b->velocity[0] = (n[0] - step[k].pull * n[1]) / m, b->velocity[MOST] = (n[1] + step[k].pull * n[0]) / m;
+        double before[ROWS * MOST] = {0};
+        b->impulse[0] = b->impulse[MOST] = 0;
+        for (int round = 0; round < 3; round++) { /* asked again it says the same */
+            respond(b);
+            apply(b, before);
+            assert_true(fabs(along(b, b->impulse, 0) - 1) < 1e-14);
+            assert_true(fabs(b->impulse[MOST] * n[0] - b->impulse[0] * n[1] - step[k].taken) < 1e-14);
+            assert_true(b->state1[0] == step[k].slips);
+        }
+        b->state0[0] = b->state1[0];
+    }
+    close_bench(b);
+}
+
+/* The tangential spring of a point that is dragged along: it holds up to the static limit, then gives way to the kinetic one; at rest it keeps what it carries and
+ * takes the static limit again. */
+static void test_a_dragged_spring_breaks_at_the_static_limit(void **state) {
+    (void)state;
+    bench *b = open_bench("penalty");
+    const setting settings[] = {{"stiffness_of", 1}, {"stiffness", 20}, {"friction", 0.5}, {"kinetic_friction", 0.3}};
+    assert_int_equal(create(b, settings, 4), 0);
+    const double k = 1e4, depth = 1e-3, n = k * depth, m = 1e9, dt = b->points.dt = 1e-3;
+    b->points.count = 1;
+    b->area[0] = 0.5;
+    b->gap[0] = -depth;
+    b->normal[0] = 1, b->normal[MOST] = 0;
+    b->normal_mass[0] = b->tangential_mass[0] = m;
+    for (int step = 0; step < 3000; step++) {
+        const double v = step < 1000 || step >= 2000 ? 1e-3 : 0; /* drag, rest, drag: 0.5 N comes to a step's 0.01 N of stretch */
+        b->velocity[0] = 0, b->velocity[MOST] = v;
+        b->impulse[0] = b->impulse[MOST] = 0;
+        respond(b);
+        const double force = b->impulse[MOST] / dt / n, since = step < 2000 ? 0.001 * step : 0.3 + 0.001 * (step - 2000);
+        const double expected = step < 1000 || step >= 2000 ? since <= 0.5 + 1e-9 ? since : 0.3 : 0.3;
+        const bool breaks = fabs(since - 0.5) < 2.5e-3; /* the step in which it gives way carries the static limit */
+        if (!breaks && !(fabs(force - expected) < 1e-6))
+            fail_msg("step %d: %.9g of the normal force, expected %.9g", step, force, expected);
+        assert_true(force <= 0.5 + 1e-12);
+        memcpy(b->state0, b->state1, sizeof b->state0);
+    }
+    close_bench(b);
+}
+
+/* Equal coefficients are one coefficient, to the last bit; a kinetic one above the static one is refused. */
+static void test_equal_coefficients_are_one(void **state) {
+    (void)state;
+    static const char *const names[] = {"coulomb", "penalty"};
+    for (int l = 0; l < 2; l++) {
+        bench *b = open_bench(names[l]);
+        const setting settings[] = {{"friction", 0.4}, {"kinetic_friction", 0.4}};
+        double impulse[2][ROWS * MOST];
+        for (int given = 0; given < 2; given++) {
+            assert_int_equal(create(b, settings, given ? 2 : 1), 0);
+            random_state = 7;
+            scramble(b, 2);
+            for (size_t i = 0; i < (ROWS + 1) * MOST; i++) b->state0[i] = 1e-4 * sin((double)i);
+            respond(b);
+            memcpy(impulse[given], b->impulse, sizeof b->impulse);
+            b->loaded->class_.destroy(b->self);
+            b->self = NULL;
+        }
+        assert_memory_equal(impulse[0], impulse[1], sizeof *impulse);
+        const setting wrong[] = {{"friction", 0.4}, {"kinetic_friction", 0.5}};
+        assert_true(create(b, wrong, 2) != 0);
+        assert_non_null(strstr(b->service.message, "kinetic_friction"));
+        close_bench(b);
+    }
+}
+
 /* ---- distance power ------------------------------------------------------------------------------------------------------------------- */
 
 static void test_the_answer_fades_with_the_distance(void **state) {
@@ -478,6 +567,9 @@ int main(void) {
         cmocka_unit_test(test_rubbing_takes_the_work_of_the_hysteresis_loop),
         cmocka_unit_test(test_oblique_bounces_lose_energy),
         cmocka_unit_test(test_penalty_refuses_what_makes_no_sense),
+        cmocka_unit_test(test_friction_falls_where_a_point_slips_until_it_is_held),
+        cmocka_unit_test(test_a_dragged_spring_breaks_at_the_static_limit),
+        cmocka_unit_test(test_equal_coefficients_are_one),
         cmocka_unit_test(test_the_answer_fades_with_the_distance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
