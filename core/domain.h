@@ -39,7 +39,7 @@ typedef struct ab_motion {
 typedef struct ab_field {
     const char *name, *unit;
     int components;
-    const char *component_names; /* "x y", "xx yy zz xy" */
+    const char *component_names; /* "x y", "xx yy zz xy"; NULL or "": ab_component_names */
 } ab_field;
 
 /* The velocities of a body on dofs, as the contact loop sees them: dof k has velocity[k*velocity_stride + c] and

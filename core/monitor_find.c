@@ -5,6 +5,7 @@
 
 #include "core/columns.h"
 #include "core/monitor_inner.h"
+#include "core/vocabulary.h"
 
 const ab_field *ab_monitor_field(const ab_domain *domain, const char *name) {
     size_t count = 0;
@@ -129,7 +130,9 @@ static bool find_points(monitor *m, const ab_domain *domain, const char *base, c
     m->field = field->name;
     m->unit = field->unit;
     if (m->quantity == THE_COMPONENT || m->quantity == THE_DISPLACEMENT) {
-        m->component = field->components == 1 && component[0] == '\0' ? 0 : component_of(field->component_names, component);
+        m->component = field->components == 1 && component[0] == '\0'
+                           ? 0
+                           : component_of(ab_component_names(field->component_names, field->components), component);
         if (m->component < 0 || m->component >= field->components) return false;
     }
     const char *over = spec->over != NULL ? spec->over : strcmp(base, "mass") == 0 || strcmp(base, "volume") == 0 ? "sum" : "mass";

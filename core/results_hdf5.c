@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "core/files.h"
+#include "core/vocabulary.h"
 
 /* ---- what will be written ---- */
 
@@ -35,7 +36,7 @@ static ab_cells cells_of(const ab_domain *domain) {
 
 static ab_status column_add(ab_frames *frames, const char *name, ab_report *report) {
     for (size_t c = 0; c < frames->column_count; c++)
-        if (strcmp(frames->columns[c]->name, name) == 0) return AB_OK;
+        if (frames->columns[c]->name != NULL && strcmp(frames->columns[c]->name, name) == 0) return AB_OK;
     if (frames->column_count == MOST_FIELDS) return ab_report_error(report, AB_NOWHERE, "output.fields: more than %d fields", MOST_FIELDS);
     column *new = calloc(1, sizeof *new + frames->bodies * sizeof(bool));
     if (new == NULL) return ab_report_failure(report, "no memory for the output field '%s'", name);
@@ -60,9 +61,10 @@ static ab_status column_add(ab_frames *frames, const char *name, ab_report *repo
         new->unit = field->unit;
         new->given = field->components;
         const bool vector = field->components == 2 || field->components == 3;
-        const bool stress = field->component_names != NULL && strncmp(field->component_names, "xx yy zz", 8) == 0;
+        const char *names = ab_component_names(field->component_names, field->components);
+        const bool stress = strncmp(names, "xx yy zz", 8) == 0;
         new->written = vector ? 3 : stress ? 6 : field->components;
-        new->names = vector ? "x y z" : stress ? "xx yy zz xy yz xz" : field->component_names != NULL ? field->component_names : "value";
+        new->names = vector ? "x y z" : stress ? "xx yy zz xy yz xz" : names;
     }
     if (new->name != NULL &&new->given > MOST_COMPONENTS)
         return ab_report_error(report, AB_NOWHERE, "output.fields: '%s' has %d components, more than %d", name, new->given,

@@ -136,6 +136,11 @@ const ab_word *ab_words_find(const ab_words *words, const char *name) {
     return NULL;
 }
 
+const char *ab_component_names(const char *names, int components) {
+    if (names != NULL && names[0] != '\0') return names;
+    return components == 2 ? "x y" : components == 4 ? "xx yy zz xy" : components == 5 ? "xx xy yx yy zz" : "value";
+}
+
 bool ab_column_is_total(const char *name) {
     return strcmp(name, "t") == 0 || strcmp(name, "step") == 0 || strcmp(name, "dt") == 0 || strcmp(name, "remainder") == 0;
 }

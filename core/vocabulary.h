@@ -23,6 +23,9 @@ extern const ab_words
     ab_words_columns;                  /* ledger columns of history.csv; also as BODY.column, but for those that ab_column_is_total names */
 extern const ab_words ab_words_fields; /* output fields that every material-point body has */
 
+/* Names of a field's components: `names` where it has any, else those that a quantity of that many has in a plane. */
+const char *ab_component_names(const char *names, int components);
+
 const ab_word *ab_words_find(const ab_words *words, const char *name);
 /* Columns there is only one of (t, step, dt, remainder). */
 bool ab_column_is_total(const char *name);

@@ -25,9 +25,9 @@ static inline size_t fake_count(const ab_domain *domain) {
 static inline bool fake_is_mesh(const ab_domain *domain) { return domain->ops->cells != NULL; }
 
 static inline const ab_field *fake_fields(const ab_domain *domain, size_t *count) {
-    static const ab_field fields[] = {{"position", "m", 2, "x y"},      {"velocity", "m s-1", 2, "x y"}, {"stress", "Pa", 4, "xx yy zz xy"},
-                                      {"mass", "kg", 1, NULL},          {"volume", "m2", 1, NULL},       {"rotation", "1", 1, NULL},
-                                      {"rotation-rate", "s-1", 1, NULL}};
+    static const ab_field fields[] = {{"position", "m", 2, "x y"}, {"velocity", "m s-1", 2, "x y"},  {"stress", "Pa", 4, "xx yy zz xy"},
+                                      {"mass", "kg", 1, NULL},     {"volume", "m2", 1, NULL},        {"back_stress", "Pa", 4, ""},
+                                      {"rotation", "1", 1, NULL},  {"rotation-rate", "s-1", 1, NULL}};
     *count = sizeof fields / sizeof *fields - (fake_is_mesh(domain) ? 0 : 2);
     return fields;
 }
@@ -61,7 +61,7 @@ static inline ab_status fake_read(const ab_domain *domain, const char *field, do
             values[2 * k] += t, values[2 * k + 1] += 0.5 * t;
         } else if (strcmp(field, "velocity") == 0)
             values[2 * k] = 1, values[2 * k + 1] = 0.5;
-        else if (strcmp(field, "stress") == 0)
+        else if (strcmp(field, "stress") == 0 || strcmp(field, "back_stress") == 0)
             for (int c = 0; c < 4; c++) values[4 * k + (size_t)c] = (double[]){10, 20, 30, 4}[c] * (id + 1);
         else
             return ab_report_failure(report, "no field '%s'", field);

@@ -72,6 +72,7 @@ static void test_points_are_gathered(void **state) {
     assert_float_equal(plain(0, "position.x", "volume"), 2, 1e-15);
     assert_float_equal(plain(0, "stress.xy", "volume"), 10, 1e-14);
     assert_float_equal(plain(0, "stress.yy", "mass"), 60, 1e-13);
+    assert_float_equal(plain(0, "back_stress.xy", "volume"), 10, 1e-14); /* a state, whose components the body does not name */
     assert_float_equal(plain(0, "pressure", "volume"), -50, 1e-13);
     assert_float_equal(plain(0, "speed", "max"), sqrt(1.25), 1e-15);
     assert_float_equal(plain(0, "displacement.y", "max"), 0.25, 1e-15);

@@ -52,7 +52,8 @@ static int remove_folder(void **state) {
 }
 
 static void ask_for_everything(fake_run *run) {
-    static char stress[] = "stress", velocity[] = "velocity", *fields[] = {stress, velocity};
+    static char stress[] = "stress", velocity[] = "velocity", back[] = "back_stress", mass[] = "mass",
+                *fields[] = {stress, velocity, back, mass};
     static char x[] = "x", tip[] = "a, \"b\"", value[] = "position.x", expect[] = "far \"enough\"", norm[] = "final",
                 remainder[] = "block.kinetic";
     static ab_monitor_spec monitors[2];
@@ -63,7 +64,7 @@ static void ask_for_everything(fake_run *run) {
     expects[1] = (ab_expect_spec){
         .name = x, .monitor = SIZE_MAX, .column = remainder, .norm = norm, .reference = {.value = 3.9}, .to = 1, .tolerance = 0.01};
     run->scene.output_fields = fields;
-    run->scene.output_field_count = 2;
+    run->scene.output_field_count = 4;
     run->scene.has_output = true;
     run->scene.output_every = 0.5;
     run->scene.monitors = monitors;
@@ -116,6 +117,9 @@ static void check_frames(int frames) {
         read_numbers(file, name, values, 24);
         static const double order[6] = {20, 40, 60, 8, 0, 0}; /* xx yy zz xy yz xz of point 1 */
         for (int c = 0; c < 6; c++) assert_float_equal(values[6 + c], order[c], 0);
+        snprintf(name, sizeof name, "/frame_%06d/block/back_stress", k);
+        read_numbers(file, name, values, 24);
+        assert_float_equal(values[9], 8, 0);
         snprintf(name, sizeof name, "/frame_%06d/all/position", k);
         read_numbers(file, name, values, 21);
         assert_float_equal(values[3 * 5], 1 + 0.5 * k, 1e-14); /* the plane's second point */
@@ -200,15 +204,16 @@ static void test_nothing_is_written_for_a_wrong_scene(void **state) {
     fake_run *run = fake_create(4, 3);
     ab_report *report = ab_report_create();
     ab_results *results = NULL;
-    char elsewhere[4300], spin[] = "spin", *fields[] = {spin};
+    char elsewhere[4300], spin[] = "spin", velocity[] = "velocity", charge[] = "charge", *fields[] = {spin, velocity, charge};
     ask_for_everything(run);
     run->scene.output_fields = fields;
-    run->scene.output_field_count = 1;
+    run->scene.output_field_count = 3;
     snprintf(elsewhere, sizeof elsewhere, "%s/deep/er", folder);
     assert_int_equal(ab_results_open(elsewhere, &run->scene, &run->view, &results, report), AB_BAD_INPUT);
     assert_null(results);
     assert_false(exists("deep"));
     assert_non_null(strstr(ab_report_text(report, 0), "spin"));
+    assert_non_null(strstr(ab_report_text(report, 1), "charge")); /* the others are looked for all the same */
     ab_report_destroy(report);
     free(run);
 }
