@@ -19,6 +19,8 @@ typedef struct curve {
     int bent;
 } curve;
 
+static const double FACE_SHORTEST = 1e-100, FACE_LONGEST = 1e100; /* m: beyond them squares are no numbers any more */
+
 /* False: it has no length, or is nowhere. */
 static int curve_of(const ab_surface *s, uint32_t face, curve *c) {
     const uint32_t *v = s->face_vertex + 3 * (size_t)face;
@@ -32,21 +34,22 @@ static int curve_of(const ab_surface *s, uint32_t face, curve *c) {
         square += c->along[d] * c->along[d];
     }
     c->length = sqrt(square);
-    return c->length > 0.0 && isfinite(c->length + c->from[0] + c->from[1] + c->bow[0] + c->bow[1]);
+    return c->length >= FACE_SHORTEST && c->length <= FACE_LONGEST && fabs(c->bow[0]) + fabs(c->bow[1]) <= FACE_LONGEST &&
+           isfinite(c->from[0] + c->from[1]);
 }
 
 static void slope_at(const curve *c, double xi, double slope[2]) {
     for (int d = 0; d < 2; ++d) slope[d] = 0.5 * c->along[d] - 2.0 * xi * c->bow[d];
 }
 
-/* Unit normal, outwards: right of the way along the face. */
+/* Unit normal, outwards: right of the way along the face. False where the face folds back and has none. */
 static int normal_at(const curve *c, double xi, double n[2]) {
     double slope[2];
     slope_at(c, xi, slope);
     const double size = sqrt(dot(slope, slope));
     n[0] = slope[1] / size;
     n[1] = -slope[0] / size;
-    return size > 0.0;
+    return size > 1e-12 * c->length;
 }
 
 /* t - r(xi) for the point at from + q. */
@@ -103,6 +106,12 @@ static int project(const curve *c, const double q[2], int closed, double *xi) {
     }
     int ended = 1;
     double best = INFINITY, unused;
+    if (pieces == 1) { /* often the chord's answer is the answer */
+        double derivative, slope[2];
+        const double f = stationary(c, q, chord, &derivative);
+        slope_at(c, chord, slope);
+        if (fabs(f / derivative) * sqrt(dot(slope, slope)) <= FACE_TOLERANCE * c->length) return 1;
+    }
     for (int k = 0; k < pieces; ++k) {
         double at[3], r[2];
         int places = 0;

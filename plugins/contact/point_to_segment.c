@@ -97,8 +97,11 @@ typedef struct hit {
     double signed_distance;     /* n.(t - r), negative inside */
     double distance;
     int extended; /* on the straight continuation of a face beyond a concave corner */
-    int corner;   /* in a concave corner: it counts beside a nearer one */
-    int end;      /* the vertex that it is at to rounding: 1 its first, 2 its last; else 0 */
+    int corner;   /* at a corner: it counts beside a nearer one */
+    int end;      /* on the end of its face to rounding: 1 the first, 2 the last; else 0 */
+    int vertex;   /* the point itself is at that vertex to rounding */
+    int second;   /* the other face of its corner is nearer */
+    int best;     /* nearest of all */
 } hit;
 
 typedef struct hits {
@@ -164,6 +167,8 @@ static void look_at_end(const ab_surface *s, const curve *c, hit h, const double
         memcpy(h.normal, here, sizeof h.normal);
         h.signed_distance = dot(here, r);
         h.extended = h.corner = 1;
+        h.second = !both;
+        h.end = end + 1;
         add_hit(all, &h);
         return;
     }
@@ -198,8 +203,9 @@ static void look_at_face(const ab_surface *s, uint32_t face, const double t[2], 
     }
     h.signed_distance = dot(h.normal, r);
     h.distance = sqrt(dot(r, r));
-    if (h.distance <= EDGE * c.length) h.end = h.xi >= 1.0 - 4.0 * EDGE ? 2 : h.xi <= -1.0 + 4.0 * EDGE ? 1 : 0;
-    if (h.end) {
+    h.end = h.xi >= 1.0 - 4.0 * EDGE ? 2 : h.xi <= -1.0 + 4.0 * EDGE ? 1 : 0;
+    h.vertex = h.end && h.distance <= 2.0 * EDGE * c.length;
+    if (h.vertex) {
         curve next;
         double there[2];
         h.corner = beside(s, face, h.end - 1, &next) != UINT32_MAX && normal_at(&next, h.end == 2 ? -1.0 : 1.0, there) &&
@@ -231,50 +237,74 @@ static double cosine_to_cone(const ab_surface *own, const uint32_t around[2], ui
 static void merge_at_vertex(const ab_surface *s, hits *all) {
     for (size_t i = 0; i < all->count; ++i) {
         hit *h = all->of + i;
-        if (h->end != 2) continue;
+        if (!h->vertex || h->end != 2) continue;
         curve next;
         const uint32_t neighbour = beside(s, h->face, 1, &next);
         for (size_t k = 0; neighbour != UINT32_MAX && k < all->count; ++k) {
             hit *other = all->of + k;
-            if (other->face != neighbour || other->end != 1 || cross(h->normal, other->normal) < 0.0) continue;
+            if (other->face != neighbour || !other->vertex || other->end != 1 || cross(h->normal, other->normal) < 0.0) continue;
             const double sum[2] = {h->normal[0] + other->normal[0], h->normal[1] + other->normal[1]}, size = sqrt(dot(sum, sum));
-            if (!(size > 0.0)) continue;
+            if (!(size > EDGE)) continue; /* a fold */
             h->normal[0] = sum[0] / size;
             h->normal[1] = sum[1] / size;
             h->signed_distance = 0.5 * (h->signed_distance + other->signed_distance);
+            h->corner = 1;
             *other = all->of[--all->count];
             break;
         }
     }
 }
 
-/* Keeps the hits that count, nearest first among those that face the same way. own: the point's vertex in its own surface, or NULL. */
+static int nearer(const hit *a, const hit *b) { return a->second != b->second ? b->second : a->distance < b->distance; }
+
+/* An extended hit counts when the nearest place is on the other face of its corner, or the corner itself. */
+static int goes_with(const ab_surface *s, const hit *extended, const hit *nearest) {
+    curve next;
+    if (extended->best) return 1;
+    if (beside(s, extended->face, extended->end - 1, &next) != nearest->face) return 0;
+    if (!nearest->extended) return extended->signed_distance >= nearest->signed_distance;
+    return beside(s, nearest->face, nearest->end - 1, &next) == extended->face;
+}
+
+/* Keeps the hits that count. own: the surface of the point's body when the point is its vertex `vertex`, or NULL. */
 static void choose(const ab_surface *s, const ab_surface *own, const uint32_t *around, uint32_t vertex, hits *all) {
     if (!all->count) return;
     size_t best = 0;
     for (size_t k = 1; k < all->count; ++k)
-        if (!all->of[k].extended && (all->of[best].extended || all->of[k].distance < all->of[best].distance)) best = k;
-    curve c;
-    const int known = curve_of(s, all->of[best].face, &c);
-    const int inside = all->of[best].signed_distance < 0.0 || (known && all->of[best].distance <= EDGE * c.length);
+        if (nearer(all->of + k, all->of + best)) best = k;
+    const hit nearest_of_all = all->of[best];
+    const int inside = nearest_of_all.extended || nearest_of_all.signed_distance < 0.0;
+    all->of[best].best = 1;
+    int met = 0; /* the nearest place is one that the point can meet */
     size_t kept = 0;
     for (size_t k = 0; k < all->count; ++k) {
         const hit h = all->of[k];
         const double w[2] = {-h.normal[0], -h.normal[1]};
-        const int meets = !own || cosine_to_cone(own, around, vertex, w) >= CAN_MEET;
-        if (meets && (inside || (h.signed_distance >= 0.0 && !h.extended))) all->of[kept++] = h;
+        if (own && cosine_to_cone(own, around, vertex, w) < CAN_MEET) continue;
+        met = met || h.best;
+        all->of[kept++] = h;
     }
     all->count = kept;
     merge_at_vertex(s, all);
-    /* of those inside only the nearest, and what continues a face behind a concave corner */
+    /* Of those behind a face only the nearest place that the point can meet counts, and what continues a face beyond a concave corner. A point outside is behind
+     * none; but where it lies on the edge of a face to rounding, on the wrong side of it (beside a body of the same width), the nearest place is one that it
+     * cannot meet, and that face counts. */
     size_t nearest = MOST_HITS;
     for (size_t k = 0; k < all->count; ++k)
-        if (all->of[k].signed_distance < 0.0 && !all->of[k].corner &&
-            (nearest == MOST_HITS || all->of[k].distance < all->of[nearest].distance))
-            nearest = k;
+        if (nearest == MOST_HITS || nearer(all->of + k, all->of + nearest)) nearest = k;
+    if (nearest != MOST_HITS && !inside) {
+        const hit *h = all->of + nearest;
+        curve c, next;
+        const int edge = !met && h->end && !h->extended && curve_of(s, nearest_of_all.face, &c) &&
+                         nearest_of_all.distance <= EDGE * c.length && beside(s, h->face, h->end - 1, &next) == nearest_of_all.face;
+        if (!edge) nearest = MOST_HITS;
+    }
     kept = 0;
-    for (size_t k = 0; k < all->count; ++k)
-        if (all->of[k].corner || all->of[k].signed_distance >= 0.0 || k == nearest) all->of[kept++] = all->of[k];
+    for (size_t k = 0; k < all->count; ++k) {
+        const hit h = all->of[k];
+        const int counts = h.extended ? inside && goes_with(s, &h, &nearest_of_all) : h.corner || h.signed_distance >= 0.0;
+        if (k == nearest || counts) all->of[kept++] = h;
+    }
     all->count = kept;
 }
 
