@@ -157,6 +157,8 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
         t->impulse[1] += jy;
         t->normal_force += fabs(jn) / step->dt;
         tangential += jt / step->dt;
+        t->area += p->area[i];
+        if (p->area[i] > 0.0) t->peak_pressure = fmax(t->peak_pressure, jn / (p->area[i] * step->dt));
         t->moment +=
             ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
         ++t->active;

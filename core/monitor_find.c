@@ -96,6 +96,8 @@ static bool find_contact(monitor *m, const char *base, int axis) {
         {"friction-force", "N", offsetof(ab_contact_totals, friction_force), false, false},
         {"points", "1", offsetof(ab_contact_totals, points), false, true},
         {"active", "1", offsetof(ab_contact_totals, active), false, true},
+        {"pressure.max", "Pa", offsetof(ab_contact_totals, peak_pressure), false, false},
+        {"length", "m", offsetof(ab_contact_totals, area), false, false},
         {"penetration", "m", offsetof(ab_contact_totals, penetration), false, false},
         {"work.friction", "J", offsetof(ab_contact_totals, friction_work), false, false},
         {"work.contact", "J", offsetof(ab_contact_totals, contact_work), false, false},

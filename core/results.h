@@ -14,6 +14,8 @@ typedef struct ab_contact_totals {      /* of one contact of the scene */
     double penetration;                 /* m, deepest in the last step, >= 0 */
     double friction_work, contact_work; /* J so far */
     size_t failures;                    /* what the finder could not decide, so far */
+    double peak_pressure;               /* Pa, largest normal impulse / (dt * area) of a point in the last step */
+    double area;                        /* m (of length, in plane strain), sum of the areas of the points with an impulse */
 } ab_contact_totals;
 
 typedef struct ab_state_view { /* what monitors and writers look at; borrowed from the scheduler */

@@ -59,6 +59,8 @@ static const ab_word contact_values[] = {
     {"friction-force", "N", "size of the sum of the tangential parts"},
     {"points", "1", "contact points found"},
     {"active", "1", "contact points with an impulse"},
+    {"pressure.max", "Pa", "largest normal force of a contact point over its share of the surface"},
+    {"length", "m", "of the surface in contact: the shares of all contact points with an impulse"},
     {"penetration", "m", "deepest penetration, 0 or more"},
     {"impulse.x", "N s", "impulse on the second body in the step, along x"},
     {"impulse.y", "N s", "impulse on the second body in the step, along y"},

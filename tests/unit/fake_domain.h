@@ -134,7 +134,9 @@ static inline void fake_update(fake_run *run, long step, double dt) {
                                            .moment = 40 * run->view.time,
                                            .normal_force = 7 * run->view.time,
                                            .points = 3,
-                                           .active = 2};
+                                           .active = 2,
+                                           .peak_pressure = 50 * run->view.time,
+                                           .area = 0.75};
 }
 
 static inline fake_run *fake_create(size_t first, size_t second) {

@@ -116,9 +116,14 @@ static void test_values_of_a_contact_and_of_the_scene(void **state) {
     ab_monitor_spec spec = of_body(-1, "force.y", NULL);
     spec.contact = 0;
     assert_float_equal(value_of(&spec, 0, NULL), 3.5, 1e-15);
-    static char active[] = "active", total[] = "momentum.x", dt[] = "dt", energy[] = "energy.kinetic";
+    static char active[] = "active", pressure[] = "pressure.max", length[] = "length", total[] = "momentum.x", dt[] = "dt",
+                energy[] = "energy.kinetic";
     spec.value = active;
     assert_float_equal(value_of(&spec, 0, NULL), 2, 0);
+    spec.value = pressure;
+    assert_float_equal(value_of(&spec, 0, NULL), 25, 1e-14);
+    spec.value = length;
+    assert_float_equal(value_of(&spec, 0, NULL), 0.75, 0);
     spec.contact = -1;
     spec.value = total;
     assert_float_equal(value_of(&spec, 0, NULL), 16, 1e-14);
