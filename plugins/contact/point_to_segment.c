@@ -233,6 +233,22 @@ static double cosine_to_cone(const ab_surface *own, const uint32_t around[2], ui
     return fmax(dot(n[0], w), dot(n[1], w));
 }
 
+/* Part of the surface that vertex v of its own body stands for which lies along a face with normal n: of a corner's two faces one may look elsewhere. */
+static double part_along(const ab_surface *own, const uint32_t around[2], uint32_t v, const double n[2]) {
+    double along = 0.0, all = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        curve c;
+        double here[2];
+        if (around[k] == UINT32_MAX || !curve_of(own, around[k], &c)) continue;
+        const uint32_t *of = own->face_vertex + 3 * (size_t)around[k];
+        if (!normal_at(&c, v == of[2] ? 0.0 : k == 0 ? 1.0 : -1.0, here)) continue;
+        const double share = c.bent ? c.length / 6.0 : c.length / 2.0;
+        all += share;
+        along += share * fmax(0.0, -dot(here, n));
+    }
+    return all > 0.0 ? along / all : 1.0;
+}
+
 /* Hits of one convex vertex, each through one of its faces, when the point is at the vertex to rounding: their average. */
 static void merge_at_vertex(const ab_surface *s, hits *all) {
     for (size_t i = 0; i < all->count; ++i) {
@@ -428,7 +444,9 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
             if (gap[k] <= p->reach && (least == MOST_HITS || gap[k] < gap[least])) least = k;
         if (least == MOST_HITS) break;
         const hit h = all->of[least];
-        const double half = half_size(s, i, h.normal), width = s->point_area[i], area = half > 0.0 ? width * width / (2.0 * half) : width;
+        const double half = half_size(s, i, h.normal), width = s->point_area[i],
+                     part = vertex == UINT32_MAX ? 1.0 : part_along(s, p->around + 2 * (size_t)vertex, vertex, h.normal),
+                     area = half > 0.0 ? width * width / (2.0 * half) : width * part;
         if (!emit(p, i, &h, gap[least], area, base | take_slot(p->self, base, h.normal, &taken))) return 0;
         for (size_t k = 0; k < all->count; ++k)
             if (dot(all->of[k].normal, h.normal) > SAME_WAY) gap[k] = INFINITY;
