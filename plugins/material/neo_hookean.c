@@ -129,7 +129,7 @@ static long few(const law *l, ab_batch *b, size_t first) {
     const size_t count = b->count - first, size = b->dimension == 2 ? 5 : 9;
     for (size_t i = 0; i < 8; i++) {
         const size_t from = first + (i < count ? i : count - 1);
-        density[i] = b->density[from];
+        density[i] = b->wave_speed ? b->density[from] : 1.0;
         for (size_t c = 0; c < size; c++) F[c * 8 + i] = b->deformation_gradient[c * b->ld + from];
     }
     const long bad = (b->dimension == 2 ? plane : space)(l, 8, &(rows){F, density, sigma, b->wave_speed ? speed : NULL});
@@ -159,7 +159,8 @@ static int update(void *self, ab_batch *b) {
     size_t i = 0;
     for (; i + 8 <= b->count; i += 8)
         bad += (b->dimension == 2 ? plane : space)(
-            l, b->ld, &(rows){b->deformation_gradient + i, b->density + i, b->stress1 + i, b->wave_speed ? b->wave_speed + i : NULL});
+            l, b->ld, &(rows){b->deformation_gradient + i, b->wave_speed ? b->density + i : NULL, b->stress1 + i,
+                             b->wave_speed ? b->wave_speed + i : NULL});
     if (i < b->count) bad += few(l, b, i);
     return bad == 0 ? 0 : complain(l, b);
 }
