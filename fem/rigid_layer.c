@@ -387,6 +387,35 @@ static bool add_cells(lattice *t, rigid_layer *l) {
     return true;
 }
 
+/* Curved faces that bulge outwards get a skin of points without volume: overlapping ellipses with the face's curvature, as circles have. */
+static bool add_skin(const rigid_outline *o, double spacing, rigid_layer *l) {
+    for (size_t f = 0; f < o->face_count; ++f) {
+        const uint32_t *v = o->face + 3 * f;
+        if (v[2] == FEM_NONE) continue;
+        double middle[2], half[2], bow[2]; /* r = middle + half xi + bow (1 - xi^2), from the centre */
+        for (int c = 0; c < 2; ++c) {
+            middle[c] = 0.5 * (o->vertex[v[0]][c] + o->vertex[v[1]][c]) - o->centre[c];
+            half[c] = 0.5 * (o->vertex[v[1]][c] - o->vertex[v[0]][c]);
+            bow[c] = o->vertex[v[2]][c] - o->centre[c] - middle[c];
+        }
+        const int parts = (int)ceil(2.0 * hypot(half[0], half[1]) / (0.5 * spacing));
+        for (int k = 0; k < parts; ++k) {
+            const double xi = (2.0 * k + 1.0) / parts - 1.0, slope[2] = {half[0] - 2.0 * bow[0] * xi, half[1] - 2.0 * bow[1] * xi};
+            const double length = hypot(slope[0], slope[1]), turn = 2.0 * (slope[1] * bow[0] - slope[0] * bow[1]);
+            if (!(turn > 0.0)) continue;
+            const double radius = length * length * length / turn, across = fmin(3.0 * length / parts, 0.7 * radius),
+                         along = across * across / radius;
+            const double t[2] = {slope[0] / length, slope[1] / length}, n[2] = {t[1], -t[0]}, a2 = across * across, b2 = along * along;
+            const double extent[3] = {a2 * t[0] * t[0] + b2 * n[0] * n[0], a2 * t[1] * t[1] + b2 * n[1] * n[1],
+                                      a2 * t[0] * t[1] + b2 * n[0] * n[1]};
+            double x[2];
+            for (int c = 0; c < 2; ++c) x[c] = middle[c] + half[c] * xi + bow[c] * (1.0 - xi * xi) - along * n[c];
+            if (!add(l, x[0], x[1], 0.0, extent)) return false;
+        }
+    }
+    return true;
+}
+
 bool rigid_layer_create(const rigid_outline *o, double spacing, double depth, rigid_layer *l) {
     *l = (rigid_layer){0};
     if (o->radius > 0.0) return add_circles(l, o->radius, o->inner, spacing, depth);
@@ -401,7 +430,7 @@ bool rigid_layer_create(const rigid_outline *o, double spacing, double depth, ri
             high[c] = fmax(high[c], t.edges[e].from[c]);
         }
     for (int c = 0; c < 2; ++c) t.size[c] = (high[c] - t.low[c]) / fmax(ceil((high[c] - t.low[c]) / spacing * (1.0 - 1e-12)), 1.0);
-    good = good && mark_all(&t, depth) && add_cells(&t, l);
+    good = good && mark_all(&t, depth) && add_cells(&t, l) && add_skin(o, spacing, l);
     free(t.edges), free(t.loop), free(t.cell), free(t.cuts), free(t.piece), free(t.spare);
     return good;
 }

@@ -222,6 +222,45 @@ static void test_layer_is_the_body(void **state) {
         }
 }
 
+/* A disc that is drawn as a mesh is that disc, also for the grid. */
+static void test_mesh_of_a_disc(void **state) {
+    (void)state;
+    one o = create("material: m, mesh: {patch: {bottom: {arc: {from: [-1, -1], to: [1, -1], center: [0, 0]}}, right: {arc: {from: [1, -1], "
+                   "to: [1, 1], center: "
+                   "[0, 0]}}, top: {arc: {from: [-1, 1], to: [1, 1], center: [0, 0]}}, left: {arc: {from: [-1, -1], to: [-1, 1], center: "
+                   "[0, 0]}}}, elements: [16, "
+                   "16], type: q8}",
+                   "");
+    const rigid_outline *outline = &o.body->outline;
+    assert_int_equal(outline->face_count, 64);
+    assert_true(fabs(outline->area - 2 * PI) < 1e-6 * 2 * PI && fabs(outline->polar - 2 * PI) < 2e-6 * 2 * PI);
+    assert_true(fabs(outline->centre[0]) < 1e-12 && fabs(outline->centre[1]) < 1e-12);
+    for (int size = 0; size < 3; size++) {
+        const double spacing = (double[]){0.2, 0.07, 0.031}[size];
+        rigid_layer layer;
+        assert_true(rigid_layer_create(outline, spacing, 10, &layer));
+        double area = 0, worst = 0;
+        for (size_t q = 0; q < layer.count; q++) area += layer.volume[q];
+        assert_true(fabs(area - outline->area) < 0.07 * spacing); /* chords instead of parabolas */
+        for (int k = 0; k < 200; k++) {
+            const double n[2] = {cos(0.1 * k), sin(0.1 * k)};
+            double reach = -INFINITY;
+            for (size_t q = 0; q < layer.count; q++) {
+                const double *e = layer.extent[q], *x = layer.place[q];
+                reach = fmax(reach, x[0] * n[0] + x[1] * n[1] + sqrt(n[0] * n[0] * e[0] + n[1] * n[1] * e[1] + 2 * n[0] * n[1] * e[2]));
+            }
+            worst = fmax(worst, fabs(reach - sqrt(2)));
+        }
+        if (!(worst < 1e-2 * spacing * spacing + 1e-6)) print_error("size %d: %g\n", size, worst);
+        assert_true(worst < 1e-2 * spacing * spacing + 1e-6);
+        rigid_layer_clear(&layer);
+    }
+    ab_cells cells;
+    o.domain->ops->cells(o.domain, &cells);
+    assert_true(cells.count == 256 && cells.nodes == 8);
+    clear(&o);
+}
+
 /* ---- motion --------------------------------------------------------------------------------------------------------------- */
 
 static void test_free_flight(void **state) {
@@ -404,6 +443,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_area_centre_and_inertia),
         cmocka_unit_test(test_layer_is_the_body),
+        cmocka_unit_test(test_mesh_of_a_disc),
         cmocka_unit_test(test_free_flight),
         cmocka_unit_test(test_motion_as_given),
         cmocka_unit_test(test_pendulum),
