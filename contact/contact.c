@@ -283,6 +283,19 @@ static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, 
     return AB_OK;
 }
 
+/* Of the softer body of a pair, kg/m3; 0: it is rigid. */
+static double softer_density(const ab_scene *scene, const contact_pair *pair) {
+    double least = INFINITY, density = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        const ab_domain *body = side ? pair->b : pair->a;
+        const double modulus = body->ops->modulus ? body->ops->modulus(body) : INFINITY;
+        if (!(modulus < least) || body->spec->material == SIZE_MAX) continue;
+        least = modulus;
+        density = scene->materials[body->spec->material].density;
+    }
+    return density;
+}
+
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
@@ -305,6 +318,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         all->count = k + 1;
         pair->points.view.struct_size = sizeof(ab_points);
         pair->points.view.dimension = 2;
+        pair->points.view.density = softer_density(scene, pair);
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.states = HISTORY;

@@ -260,6 +260,7 @@ typedef struct ab_points {
     double modulus;    /* Pa: P-wave modulus of the softer body */
     size_t failures;   /* find adds what it could not decide; the run's summary shows the sum */
     double speed;      /* m/s: with AB_NEED_SURFACE, no place listed on one surface moves faster than this against one of the other */
+    double density;    /* kg/m3: of the body that modulus is of; 0 where it has none (rigid) */
 } ab_points;
 
 typedef struct ab_contact_ops {

@@ -17,17 +17,17 @@ typedef struct penalty {
 
 static const ab_param PARAMS[] = {
     {"stiffness_of", "1",
-     "what stiffness is a multiple of. mass: of m/dt^2, m the effective mass of the contact point along the normal; it takes any dt and "
-     "gets "
-     "stiffer as dt gets smaller. modulus: of E/h per area, E the P-wave modulus of the softer body and h the cell; the same for any dt, "
-     "which "
-     "has to stay below 2 sqrt(m/k)",
+     "what stiffness is a multiple of. mass: of m/dt^2, m the effective mass of the contact point along the normal: any dt will do, and "
+     "the "
+     "smaller, the stiffer. modulus: of E/h per area, E the P-wave modulus of the softer body and h the cell: the same for every dt, which "
+     "has "
+     "to stay below 2 sqrt(m/k)",
      "mass|modulus", AB_CHOICE, 0, OF_MASS, 0, 0},
     {"stiffness", "1",
-     "multiple of what stiffness_of says: of mass at most 1; of modulus about 10: a pressure p then makes the bodies overlap by h p/(10 E)",
+     "multiple of what stiffness_of says: of mass at most 1, of modulus up to about 3; a pressure p then makes bodies overlap by h p/(3 E)",
      NULL, AB_REAL, AB_MIN_OPEN, 0.5, 0.0, 1e6},
     {"damping", "1", "viscous part, along and across the normal, of the critical one; it never pulls and stays below the friction limit",
-     NULL, AB_REAL, 0, 0.0, 0.0, 1.0},
+     NULL, AB_REAL, 0, 0.2, 0.0, 1.0},
     {"friction", "1", "coefficient of friction", NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
     {"tangential", "1", "stiffness across the normal, of that along it", NULL, AB_REAL, AB_MIN_OPEN, 1.0, 0.0, 1.0},
     {"kinetic_friction", "1",
@@ -107,9 +107,26 @@ static void slip_spring(const penalty *law, const ab_points *p, size_t i, double
     }
 }
 
-/* Stiffness of point i along the normal, N/m. */
+/* h, or in three dimensions h^2. */
+static double cell_face(const ab_points *p) { return p->dimension == 3 ? p->cell * p->cell : p->cell; }
+
+/* A point that is a node, on both sides: no other has its masses. */
+static int alone(const ab_points *p, size_t i) { return p->a_start[i + 1] - p->a_start[i] == 1 && p->b_start[i + 1] - p->b_start[i] == 1; }
+
+/* Stiffness of point i along the normal, N/m. Of mass: points that are several on the nodes of a cell share their masses as they share its face. */
 static double normal_stiffness(const penalty *law, const ab_points *p, size_t i) {
-    return law->stiffness * (law->of == OF_MASS ? p->normal_mass[i] / (p->dt * p->dt) : p->modulus / p->cell * p->area[i]);
+    if (law->of == OF_MODULUS) return law->stiffness * p->modulus / p->cell * p->area[i];
+    return law->stiffness * p->normal_mass[i] / (p->dt * p->dt) * (alone(p, i) ? 1.0 : fmin(1.0, p->area[i] / cell_face(p)));
+}
+
+/* What the host's bound of the step, 2 sqrt(m/k), has to know of a spring of modulus. Points that share nodes with others swing with all of a cell's face; and a
+ * node that the body just reaches has next to no mass while the gap, which comes from material points, swings with theirs: no more area is counted than that of
+ * a column with its mass. */
+static double bounding_stiffness(const penalty *law, const ab_points *p, size_t i) {
+    static const double COLUMN = 8.0; /* a node on the face between two equal bodies has rho h A/4: light is less than half of that */
+    double area = alone(p, i) ? p->area[i] : fmax(p->area[i], cell_face(p));
+    if (p->density > 0.0) area = fmin(area, COLUMN * p->normal_mass[i] / (p->density * p->cell));
+    return law->stiffness * p->modulus / p->cell * area;
 }
 
 static int respond(void *self, ab_points *p, size_t first, size_t count) {
@@ -130,7 +147,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         if (law->weakens) p->state1[d * ld + i] = 1.0; /* bodies that are apart slip; when they meet, until kinetic friction holds them */
         if (depth > 0.0 && m > 0.0) {
             const double k = normal_stiffness(law, p, i), c_dt = 2.0 * law->damping * sqrt(k * m) * dt, old = lambda;
-            if (p->stiffness && law->of == OF_MODULUS) p->stiffness[i] = k;
+            if (p->stiffness && law->of == OF_MODULUS) p->stiffness[i] = bounding_stiffness(law, p, i);
             /* lambda = dt k depth + dt c (approach without lambda - lambda/m) */
             lambda = fmax(0.0, (dt * k * depth + c_dt * (approach + old / m)) / (1.0 + c_dt / m));
             if (law->friction > 0.0 && mt > 0.0) {
