@@ -8,9 +8,6 @@
 
 #include "contact/contact.h"
 
-enum { MOST_ROUNDS = 200 };
-static const double STANDSTILL = 1e-13; /* change of an impulse against the largest one of the step */
-
 typedef struct contact_all {
     ab_interaction face; /* first */
     const ab_scene *scene;
@@ -23,71 +20,6 @@ typedef struct contact_all {
     double critical_dt;         /* s, of the springs in the last dynamic stage; INFINITY: none */
     char limit[256];            /* which spring that is */
 } contact_all;
-
-/* Applies what point i wants beyond what its dofs have felt. Returns the size of the change, N s. */
-static double apply(contact_pair *pair, const contact_side side[2], size_t i) {
-    ab_points *p = &pair->points.view;
-    double j[2];
-    for (size_t c = 0; c < 2; ++c) {
-        j[c] = p->impulse[c * p->ld + i] - pair->points.applied[c * p->ld + i];
-        pair->points.applied[c * p->ld + i] = p->impulse[c * p->ld + i];
-    }
-    if (j[0] == 0.0 && j[1] == 0.0) return 0.0;
-    contact_push(side, i, j);
-    return hypot(j[0], j[1]);
-}
-
-/* The response's wishes for points first .. first + count - 1. */
-static ab_status ask_response(contact_pair *pair, size_t first, size_t count, ab_report *report) {
-    const ab_contact_ops *ops = &pair->spec->responder->contact;
-    const int code = ops->respond(pair->responder, &pair->points.view, first, count);
-    return code == 0 ? AB_OK : contact_complain(pair, &pair->responder_service, "respond", code, report);
-}
-
-/* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
- * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
- * the difference would pump energy into the strain. `history`: rows of HISTORY_*. */
-static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history) {
-    ab_points *p = &pair->points.view;
-    const size_t ld = p->ld;
-    for (size_t i = first; i < first + count; ++i) {
-        const int status = (int)history[HISTORY_STATUS * ld + i];
-        if (status == STATUS_FREE) continue;
-        const double nx = p->normal[i], ny = p->normal[ld + i], vx = p->relative_velocity[i], vy = p->relative_velocity[ld + i];
-        const double jn = p->normal_mass[i] * (vx * nx + vy * ny - history[HISTORY_NORMAL * ld + i]);
-        const double jt =
-            status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
-        p->impulse[i] += jn * nx - jt * ny;
-        p->impulse[ld + i] += jn * ny + jt * nx;
-    }
-}
-
-/* One round over a pair's points. history: NULL in the dynamic stage. *change, *largest: N s. */
-static ab_status round_over(contact_pair *pair, const double *history, double *change, double *largest, ab_report *report) {
-    contact_points *points = &pair->points;
-    ab_points *p = &points->view;
-    contact_side side[2];
-    contact_sides(pair, side);
-    double *relative = (double *)(uintptr_t)p->relative_velocity;
-    const size_t batch = points->shared ? 1 : p->count;
-    for (size_t first = 0; first < p->count; first += batch) {
-        for (size_t i = first; i < first + batch; ++i) {
-            double v[2];
-            contact_relative_velocity(side, false, i, v);
-            relative[i] = v[0];
-            relative[p->ld + i] = v[1];
-        }
-        if (history)
-            keep_relative_velocity(pair, first, batch, history);
-        else
-            AB_TRY(ask_response(pair, first, batch, report));
-        for (size_t i = first; i < first + batch; ++i) {
-            *change = fmax(*change, apply(pair, side, i));
-            *largest = fmax(*largest, hypot(p->impulse[i], p->impulse[p->ld + i]));
-        }
-    }
-    return AB_OK;
-}
 
 /* How the dynamic stage has left each point. */
 static void note_history(contact_pair *pair) {
@@ -205,27 +137,9 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
         }
         all->found_step = step->number;
     }
-    size_t active = 0;
-    bool again = false;
-    for (size_t k = 0; k < all->count; ++k) {
-        contact_pair *pair = all->pairs + k;
-        if (!pair->points.view.count) continue;
-        AB_TRY(prepare(pair, report));
-        ++active;
-        again = again || pair->points.shared || pair->points.held;
-    }
-    again = again || active > 1;
-    for (int round = 0; active && round < (again ? MOST_ROUNDS : 1); ++round) {
-        double change = 0.0, largest = 0.0;
-        for (size_t k = 0; k < all->count; ++k)
-            if (all->pairs[k].points.view.count) {
-                const ab_points *p = &all->pairs[k].points.view;
-                const double *rows = all->answered_step == step->number ? p->state1 : p->state0;
-                const double *history = stage == AB_STAGE_KINEMATIC ? rows + (all->pairs[k].points.states - HISTORY) * p->ld : NULL;
-                AB_TRY(round_over(all->pairs + k, history, &change, &largest, report));
-            }
-        if (change <= STANDSTILL * largest) break;
-    }
+    for (size_t k = 0; k < all->count; ++k)
+        if (all->pairs[k].points.view.count) AB_TRY(prepare(all->pairs + k, report));
+    AB_TRY(contact_rounds(all->pairs, all->count, stage, all->answered_step == step->number, report));
     if (stage == AB_STAGE_DYNAMIC) {
         all->answered_step = step->number;
         note_springs(all);

@@ -17,6 +17,7 @@ typedef struct contact_points {
     ab_points view;              /* what plugins see */
     double *relative_old;        /* relative velocity at the start of the step */
     double *applied;             /* impulse that the dofs have felt already; the loop applies the difference */
+    double *change, *direction;  /* of the impulses: in the last round, and where the rounds are going */
     size_t stencil_a, stencil_b; /* capacity of the stencils */
     size_t states;               /* rows of history: the response's, then the loop's own HISTORY rows */
     bool shared;                 /* some dof serves more than one point: one point after the other, and again until impulses stand still */
@@ -87,6 +88,9 @@ ab_status contact_find(contact_pair *, const ab_step *, ab_report *);
 /* Contact keeps bodies from getting deeper into each other and does not push apart what is drawn one inside the other: says so, after the first find. */
 void contact_warn_of_overlap(const ab_scene *, const contact_pair *, ab_report *);
 ab_status contact_complain(const contact_pair *, const ab_service *, const char *what, int code, ab_report *);
+
+/* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
+ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);
 
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */

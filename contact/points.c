@@ -30,6 +30,7 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
             !resize(&mt, 1, 1, old, n, sizeof(double)) || !resize(&v->impulse, 2, 2, old, n, sizeof(double)) ||
             !resize(&state0, s, s, old, n, sizeof(double)) || !resize(&v->state1, s, s, old, n, sizeof(double)) ||
             !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) || !resize(&points->applied, 2, 2, old, n, sizeof(double)) ||
+            !resize(&points->change, 2, 2, old, n, sizeof(double)) || !resize(&points->direction, 2, 2, old, n, sizeof(double)) ||
             !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
             !resize(&v->b_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)))
             return false;
@@ -58,7 +59,7 @@ void contact_points_destroy(contact_points *points) {
         free((void *)(uintptr_t)v->relative_velocity), free((void *)(uintptr_t)v->normal_mass);
     free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1),
         free(points->relative_old);
-    free(points->applied), free(v->a_start), free(v->b_start);
+    free(points->applied), free(points->change), free(points->direction), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
 }
 

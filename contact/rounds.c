@@ -1,0 +1,143 @@
+/* rounds.c: projected Gauss-Seidel over the contact points of all pairs in a fixed order: each point in turn is asked for the impulse it wants, and both sides' dofs
+ * feel the difference, until the impulses stand still. Where points share dofs the rounds are sped up as nonlinear conjugate gradients
+ * (Silcowitz, Niebe, Erleben 2009): after a round a part of the last direction is added, and the next round puts right what that has broken. The last word
+ * always has a plain round, so every impulse is one that the response asked for.
+ *
+ * More points may push than there are freedoms to push on (two material points over a cell, nodes of two meshes face to face). Their conditions then contradict each
+ * other by what the gaps differ, and impulses go on moving from one to the other for ever while velocities stand still: the rounds end there, too. */
+#include <math.h>
+#include <string.h>
+
+#include "contact/contact.h"
+
+enum { MOST_ROUNDS = 400, PATIENCE = 12, PLAIN = 8 }; /* the first rounds are often enough */
+static const double STANDSTILL = 1e-13;               /* change of an impulse against the largest one of the step */
+static const double PROGRESS = 0.8;                   /* PATIENCE rounds must bring the change down to this part of what it was */
+
+typedef struct progress {
+    double change, largest, square; /* N s, N s, N2 s2: largest change of an impulse in a round, largest impulse, sum of squared changes */
+} progress;
+
+static double size_of(double x, double y) { return sqrt(x * x + y * y); }
+
+/* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
+ * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
+ * the difference would pump energy into the strain. `history`: rows of HISTORY_*. */
+static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history) {
+    ab_points *p = &pair->points.view;
+    const size_t ld = p->ld;
+    for (size_t i = first; i < first + count; ++i) {
+        const int status = (int)history[HISTORY_STATUS * ld + i];
+        if (status == STATUS_FREE) {
+            p->impulse[i] = p->impulse[ld + i] = 0.0;
+            continue;
+        }
+        const double nx = p->normal[i], ny = p->normal[ld + i], vx = p->relative_velocity[i], vy = p->relative_velocity[ld + i];
+        const double jn = p->normal_mass[i] * (vx * nx + vy * ny - history[HISTORY_NORMAL * ld + i]);
+        const double jt =
+            status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
+        p->impulse[i] += jn * nx - jt * ny;
+        p->impulse[ld + i] += jn * ny + jt * nx;
+    }
+}
+
+/* What point i wants beyond what its dofs have felt. */
+static void apply(contact_pair *pair, const contact_side side[2], size_t i, progress *so_far) {
+    const ab_points *p = &pair->points.view;
+    double j[2];
+    for (size_t c = 0; c < 2; ++c) {
+        const size_t k = c * p->ld + i;
+        j[c] = p->impulse[k] - pair->points.applied[k];
+        pair->points.applied[k] = p->impulse[k];
+        pair->points.change[k] = j[c];
+    }
+    so_far->largest = fmax(so_far->largest, size_of(p->impulse[i], p->impulse[p->ld + i]));
+    if (j[0] == 0.0 && j[1] == 0.0) return;
+    const double square = j[0] * j[0] + j[1] * j[1];
+    so_far->change = fmax(so_far->change, sqrt(square));
+    so_far->square += square;
+    contact_push(side, i, j);
+}
+
+/* One round over a pair's points. history: NULL in the dynamic stage. */
+static ab_status round_over(contact_pair *pair, const contact_side side[2], const double *history, progress *so_far, ab_report *report) {
+    contact_points *points = &pair->points;
+    ab_points *p = &points->view;
+    double *relative = (double *)(uintptr_t)p->relative_velocity;
+    const size_t batch = points->shared ? 1 : p->count;
+    const ab_contact_ops *ops = &pair->spec->responder->contact;
+    for (size_t first = 0; first < p->count; first += batch) {
+        for (size_t i = first; i < first + batch; ++i) {
+            double v[2];
+            contact_relative_velocity(side, false, i, v);
+            relative[i] = v[0];
+            relative[p->ld + i] = v[1];
+        }
+        if (history)
+            keep_relative_velocity(pair, first, batch, history);
+        else {
+            const int code = ops->respond(pair->responder, p, first, batch);
+            if (code != 0) return contact_complain(pair, &pair->responder_service, "respond", code, report);
+        }
+        for (size_t i = first; i < first + batch; ++i) apply(pair, side, i, so_far);
+    }
+    return AB_OK;
+}
+
+/* After a round: `part` of the last direction on top of it. direction becomes part * direction + what the round has changed. */
+static void go_on(contact_pair *pair, const contact_side side[2], double part) {
+    contact_points *points = &pair->points;
+    const ab_points *p = &points->view;
+    const size_t ld = p->ld;
+    for (size_t i = 0; i < p->count; ++i) {
+        double *dx = points->direction + i, *dy = dx + ld;
+        if (part == 0.0) {
+            *dx = points->change[i];
+            *dy = points->change[ld + i];
+            continue;
+        }
+        const double j[2] = {part * *dx, part * *dy};
+        *dx = j[0] + points->change[i];
+        *dy = j[1] + points->change[ld + i];
+        if (j[0] == 0.0 && j[1] == 0.0) continue;
+        for (size_t c = 0; c < 2; ++c) p->impulse[c * ld + i] += j[c], points->applied[c * ld + i] = p->impulse[c * ld + i];
+        contact_push(side, i, j);
+    }
+}
+
+ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool answered, ab_report *report) {
+    size_t active = 0;
+    bool again = false;
+    for (size_t k = 0; k < count; ++k) {
+        if (!pairs[k].points.view.count) continue;
+        ++active;
+        again = again || pairs[k].points.shared || pairs[k].points.held;
+    }
+    again = again || active > 1;
+    double square = 0.0, least = INFINITY;
+    int since = 0; /* rounds since the change was that small */
+    for (int round = 0; active && round < (again ? MOST_ROUNDS : 1); ++round) {
+        progress so_far = {0};
+        for (size_t k = 0; k < count; ++k) {
+            contact_pair *pair = pairs + k;
+            const ab_points *p = &pair->points.view;
+            if (!p->count) continue;
+            contact_side side[2];
+            contact_sides(pair, side);
+            const double *rows = answered ? p->state1 : p->state0;
+            const double *history = stage == AB_STAGE_KINEMATIC ? rows + (pair->points.states - HISTORY) * p->ld : NULL;
+            AB_TRY(round_over(pair, side, history, &so_far, report));
+        }
+        if (so_far.change < PROGRESS * least) least = so_far.change, since = 0;
+        if (!again || so_far.change <= STANDSTILL * so_far.largest || ++since > PATIENCE) break;
+        const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;
+        square = so_far.square;
+        for (size_t k = 0; k < count && round >= PLAIN && round + 1 < MOST_ROUNDS; ++k) {
+            if (!pairs[k].points.view.count) continue;
+            contact_side side[2];
+            contact_sides(pairs + k, side);
+            go_on(pairs + k, side, part);
+        }
+    }
+    return AB_OK;
+}
