@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 40
+# cost: 50
 # Every type of element in time: the bar at second order, a block that spins, the frequencies of a free square, the critical step, an element that turns inside out,
 # the same bits on any number of threads. test_elements.sh BUILD
 set -eu
