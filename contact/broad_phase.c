@@ -7,6 +7,8 @@
 
 static const double FINEST = 1e-6; /* of the length of all faces: no finer cells */
 static const double INWARD = 0.5;  /* of a typical face: how deep inside, beyond half its size, a point still finds its face */
+/* Cells that a body may leap in a step and still be seen in time: regions cost its square times the faces. */
+static const double LEAST_LEAP = 4.0, MOST_LEAP = 64.0, LEAP_COST = 2e6;
 
 struct contact_broad {
     double grid_cell, cell; /* m; grid_cell 0: there is no grid; cell 0: not known yet */
@@ -150,7 +152,8 @@ static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surfac
         broad->speed = any ? largest_difference(&velocity_a, &velocity_b) : 0.0;
         bool enough = true;
         for (int side = 0; side < 2; ++side) {
-            distance[side] = 2.0 * dt * broad->speed + INWARD * broad->length[side];
+            const double most = fmax(LEAST_LEAP, fmin(MOST_LEAP, sqrt(LEAP_COST / (1.0 + (double)surface[side].face_count))));
+            distance[side] = fmin(2.0 * dt * broad->speed, most * broad->cell) + INWARD * broad->length[side];
             needed[side] = distance[side] + largest_half(surface + 1 - side);
             enough = enough && (!surface[1 - side].point_count || needed[side] <= broad->reach[side].reach);
         }

@@ -120,11 +120,20 @@ static bool follow(contact_reach *r, chord c, double cell, double wide, uint32_t
     for (int d = 0; d < 2; ++d)
         if (fmax(fabs(c.from[d]), fabs(c.to[d])) + wide > FURTHEST * cell) return true;
     const int axis = fabs(c.to[0] - c.from[0]) >= fabs(c.to[1] - c.from[1]) ? 0 : 1;
-    const long begin = (long)floor((fmin(c.from[axis], c.to[axis]) - wide) / cell),
-               end = (long)floor((fmax(c.from[axis], c.to[axis]) + wide) / cell);
+    long bound[2][2]; /* no point is beyond the window */
+    for (int d = 0; d < 2; ++d) {
+        bound[d][0] = (long)floor(fmax(r->window.low[d] / cell, -FURTHEST));
+        bound[d][1] = (long)floor(fmin(r->window.high[d] / cell, FURTHEST));
+    }
+    long begin = (long)floor((fmin(c.from[axis], c.to[axis]) - wide) / cell),
+         end = (long)floor((fmax(c.from[axis], c.to[axis]) + wide) / cell);
+    if (begin < bound[axis][0]) begin = bound[axis][0];
+    if (end > bound[axis][1]) end = bound[axis][1];
     for (long i = begin; i <= end; ++i) {
         long first, last;
         if (!rows_of_column(&c, axis, cell, wide, i, &first, &last)) continue;
+        if (first < bound[1 - axis][0]) first = bound[1 - axis][0];
+        if (last > bound[1 - axis][1]) last = bound[1 - axis][1];
         for (long j = first; j <= last; ++j) {
             const long x = axis == 0 ? i : j, y = axis == 0 ? j : i;
             bool kept;
