@@ -3,6 +3,7 @@
 #ifndef AB_DOMAIN_H
 #define AB_DOMAIN_H
 
+#include <math.h>
 #include <stdint.h>
 
 #include "core/scene.h"
@@ -141,5 +142,10 @@ struct ab_domain { /* first member of each method's own struct */
     int dimension;
     size_t index; /* of the body in the scene */
 };
+
+/* True for a body that moves as a whole: no step goes over its points or elements. */
+static inline bool ab_domain_is_rigid(const ab_domain *domain) {
+    return domain->ops->modulus && !(domain->ops->modulus(domain) < (double)INFINITY);
+}
 
 #endif

@@ -78,9 +78,13 @@ static bool has_elements(const ab_domain *domain) { return domain->ops->cells !=
 /* What a body might cost and does not. */
 static void each_left_out_of_body(const ab_schedule *schedule, size_t b, item tell, ab_text *text, size_t *number) {
     const ab_scene *scene = schedule->scene;
+    const ab_domain *domain = schedule->domains[b];
     const char *name = scene->bodies[b].name;
     char what[256];
-    if (scene->bodies[b].material < scene->material_count) {
+    if (ab_domain_is_rigid(domain)) {
+        snprintf(what, sizeof what, "'%s' is rigid: no strain, no stress, no material call", name);
+        tell(text, (*number)++, "stress", what, NULL);
+    } else if (scene->bodies[b].material < scene->material_count) {
         const ab_loaded_class *loaded = scene->materials[scene->bodies[b].material].loaded;
         if (loaded->class_.nstate == 0) {
             snprintf(what, sizeof what, "%s of '%s' keeps none: no state arrays", loaded->class_.name, name);
@@ -91,9 +95,10 @@ static void each_left_out_of_body(const ab_schedule *schedule, size_t b, item te
             tell(text, (*number)++, "deformation gradient", what, NULL);
         }
     }
-    if (has_elements(schedule->domains[b]) && !contact_asks(scene, b, AB_NEED_SHARED_NODES)) {
-        snprintf(what, sizeof what, "no contact looks for '%s' on the grid: no points inside its elements", name);
-        tell(text, (*number)++, "inner points", what, NULL);
+    if ((has_elements(domain) || ab_domain_is_rigid(domain)) && !contact_asks(scene, b, AB_NEED_SHARED_NODES)) {
+        snprintf(what, sizeof what, "no contact looks for '%s' on the grid: no points %s", name,
+                 ab_domain_is_rigid(domain) ? "along its outline" : "inside its elements");
+        tell(text, (*number)++, "points on the grid", what, NULL);
     }
 }
 
@@ -119,7 +124,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
         schedule->domains[b]->ops->plan(schedule->domains[b], &body);
         each_left_out_of_body(schedule, b, tell, text, &number);
         cells += (double)body.cells;
-        known = known && (body.cells > 0 || has_elements(schedule->domains[b]));
+        known = known && (body.cells > 0 || has_elements(schedule->domains[b]) || ab_domain_is_rigid(schedule->domains[b]));
     }
     const double all = (double)scene->grid_cells[0] * scene->grid_cells[1];
     if (scene->grid_cell > 0.0 && known && all > cells) {
@@ -137,15 +142,17 @@ static double steps_of(const ab_schedule *schedule) {
     return (double)schedule->number + (schedule->dt > 0.0 ? ceil(left / schedule->dt - 1e-9) : 0.0);
 }
 
-/* points: of clouds; *nodes: of meshes. */
+/* points: of clouds; *nodes: of meshes; those of rigid bodies, which no step goes over, left out. */
 static ab_plan_body totals_of(const ab_schedule *schedule, size_t *nodes) {
     ab_plan_body sum = {0};
     *nodes = 0;
     for (size_t b = 0; b < schedule->body_count; b++) {
         ab_plan_body body;
         schedule->domains[b]->ops->plan(schedule->domains[b], &body);
-        *(has_elements(schedule->domains[b]) ? nodes : &sum.points) += body.points;
-        sum.elements += body.elements;
+        if (!ab_domain_is_rigid(schedule->domains[b])) {
+            *(has_elements(schedule->domains[b]) ? nodes : &sum.points) += body.points;
+            sum.elements += body.elements;
+        }
         sum.cells += body.cells;
         sum.tiles += body.tiles;
         sum.bytes += body.bytes;
@@ -300,11 +307,14 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
         ab_text_add(text, "  %s: %s, ", scene->bodies[b].name, domain->ops->method);
         if (has_elements(domain)) {
             ab_text_add(text, "%zu nodes in %zu element%s, ", body.points, body.elements, body.elements == 1 ? "" : "s");
-            if (body.tiles) ab_text_add(text, "seen on the grid in %zu cells (%zu tiles), ", body.cells, body.tiles);
+        } else if (ab_domain_is_rigid(domain)) {
+            ab_text_add(text, "%zu points on the outline, ", body.points);
         } else {
             ab_text_add(text, "%zu points in %zu cells (%zu tiles), %zu bytes a point, ", body.points, body.cells, body.tiles,
                         body.bytes_per_point);
         }
+        if (body.tiles && (has_elements(domain) || ab_domain_is_rigid(domain)))
+            ab_text_add(text, "seen on the grid (%zu tiles), ", body.tiles);
         add_bytes(text, body.bytes);
         ab_text_add(text, " in all\n    fields: %s\n    each step: %s\n", body.fields, body.passes);
     }
@@ -324,7 +334,7 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
     ab_text_add(text, "\nNot paid for\n");
     each_left_out(schedule, text_left_out, text);
     ab_text_add(text, "\nCost\n  ");
-    if (sum.points || !nodes) ab_text_add(text, "%zu points, ", sum.points);
+    if (sum.points) ab_text_add(text, "%zu points, ", sum.points);
     if (nodes) ab_text_add(text, "%zu nodes, %zu elements, ", nodes, sum.elements);
     add_bytes(text, sum.bytes);
     ab_text_add(text, ", %d thread%s\n  dt %.4g s; ", options->threads, options->threads == 1 ? "" : "s", schedule->dt);

@@ -8,7 +8,7 @@ typedef struct ab_progress { /* filled by begin; no part of it is for others */
     FILE *stream;
     bool quiet, terminal, drawn;
     double time_end;                /* s, of the scene */
-    size_t work;                    /* points and elements, each taken on by a step at a time */
+    size_t work;                    /* points, elements and rigid bodies, each taken on by a step at a time */
     long stride, next;              /* the clock is looked at every `stride` steps */
     double started, checked, shown; /* s, of the clock */
     double rate_clock, rate_time;   /* where the rates below were measured last */

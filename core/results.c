@@ -168,12 +168,14 @@ static void alarm_of_remainder(const ab_results *results, const ab_state_view *v
     const double moved = ab_results_moved(results, view);
     if (!(fabs(view->remainder) > ALARM * moved) || !(fabs(view->remainder) > ROUNDING * view->total.kinetic)) return;
     bool points = false, elements = false;
-    for (size_t b = 0; b < view->scene->body_count; b++) *(view->domains[b]->ops->cells != NULL ? &elements : &points) = true;
+    for (size_t b = 0; b < view->scene->body_count; b++)
+        if (!ab_domain_is_rigid(view->domains[b])) *(view->domains[b]->ops->cells != NULL ? &elements : &points) = true;
     ab_report_warning(
         report, view->scene->mark_time,
         "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s may help",
         view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved,
-        points ? "a finer grid, basis gimp, update musl, " : "", elements ? "more elements, " : "", "or a smaller dt");
+        points ? "a finer grid, basis gimp, update musl, " : "", elements ? "more elements, " : "",
+        points || elements ? "or a smaller dt" : "a smaller dt");
 }
 
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */

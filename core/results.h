@@ -46,7 +46,7 @@ ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_re
 typedef struct ab_run_facts {                                                           /* for the summary and the closing table */
     double wall_seconds, cpu_seconds, point_steps_per_second, element_steps_per_second; /* both over the same time: that of all steps */
     size_t peak_bytes, bytes_per_point;
-    size_t points, nodes, elements; /* points of clouds; nodes and elements of meshes */
+    size_t points, nodes, elements, rigid; /* points of clouds; nodes and elements of meshes; bodies that move as a whole, without theirs */
     long steps;
     int threads;
     const char *version, *outcome; /* "done", "failed: ...", "stopped by signal 2" */

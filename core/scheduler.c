@@ -276,6 +276,10 @@ static void count_work(ab_schedule *s) {
     for (size_t b = 0; b < s->body_count; ++b) {
         const ab_domain *domain = s->domains[b];
         ab_cells cells = {0};
+        if (ab_domain_is_rigid(domain)) {
+            s->rigid++;
+            continue;
+        }
         if (domain->ops->cells) domain->ops->cells(domain, &cells);
         *(domain->ops->cells ? &s->nodes : &s->points) += domain->ops->count(domain);
         s->elements += cells.count;
@@ -302,7 +306,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     }
     count_work(s);
     ab_progress progress;
-    ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points + s->elements);
+    ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points + s->elements + s->rigid);
     ab_text plan_json = {0};
     ab_plan_add_json(&plan_json, s, options, 0.0);
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -315,6 +319,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
                           .points = s->points,
                           .nodes = s->nodes,
                           .elements = s->elements,
+                          .rigid = s->rigid,
                           .version = ABUT_VERSION,
                           .outcome = "done",
                           .plan_json = plan_json.failed ? NULL : plan_json.bytes};
@@ -341,7 +346,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     for (size_t b = 0; b < s->body_count; ++b) {
         ab_plan_body plan;
         s->domains[b]->ops->plan(s->domains[b], &plan);
-        if (!s->domains[b]->ops->cells) bytes += plan.bytes;
+        if (!s->domains[b]->ops->cells && !ab_domain_is_rigid(s->domains[b])) bytes += plan.bytes;
     }
     facts.bytes_per_point = s->points ? bytes / s->points : 0;
     ab_schedule_view(s, &view);

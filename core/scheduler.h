@@ -29,8 +29,8 @@ typedef struct ab_schedule { /* a scene on its way through time */
     bool warned;       /* of a dt above the limit */
     ab_energy *energy, *energy_start, total;
     ab_motion *motion;
-    double total_now, total_start;  /* J: all terms of the ledger */
-    size_t points, nodes, elements; /* points of clouds; nodes and elements of meshes */
+    double total_now, total_start;         /* J: all terms of the ledger */
+    size_t points, nodes, elements, rigid; /* what a step goes over: ab_run_facts */
     double phase_seconds[8];
 } ab_schedule;
 

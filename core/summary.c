@@ -144,8 +144,8 @@ static void columns(ab_text *text, const ab_results *results) {
 static void cost(ab_text *text, const ab_run_facts *facts) {
     number(text, ",\n  \"wall_seconds\": ", facts->wall_seconds);
     number(text, ",\n  \"cpu_seconds\": ", facts->cpu_seconds);
-    ab_text_add(text, ",\n  \"steps\": %ld,\n  \"points\": %zu,\n  \"nodes\": %zu,\n  \"elements\": %zu", facts->steps, facts->points,
-                facts->nodes, facts->elements);
+    ab_text_add(text, ",\n  \"steps\": %ld,\n  \"points\": %zu,\n  \"nodes\": %zu,\n  \"elements\": %zu,\n  \"rigid_bodies\": %zu",
+                facts->steps, facts->points, facts->nodes, facts->elements, facts->rigid);
     number(text, ",\n  \"point_steps_per_second\": ", facts->point_steps_per_second);
     number(text, ",\n  \"element_steps_per_second\": ", facts->element_steps_per_second);
     ab_text_add(text, ",\n  \"peak_bytes\": %zu,\n  \"bytes_per_point\": %zu,\n  \"threads\": %d", facts->peak_bytes,

@@ -45,16 +45,24 @@ static void expects(const ab_results *results, FILE *stream) {
     }
 }
 
-/* "120 points", "30 elements", or both: what a step goes over. */
+/* "120 points, 1 element and 2 rigid bodies": what a step goes over. */
 static void work(const ab_run_facts *facts, char *text, size_t size) {
-    char elements[64];
-    snprintf(elements, sizeof elements, "%zu element%s", facts->elements, facts->elements == 1 ? "" : "s");
-    if (facts->elements == 0)
-        snprintf(text, size, "%zu points", facts->points);
-    else if (facts->points == 0)
-        snprintf(text, size, "%s", elements);
-    else
-        snprintf(text, size, "%zu points and %s", facts->points, elements);
+    const struct {
+        size_t count;
+        const char *one, *many;
+    } parts[] = {
+        {facts->points, "point", "points"}, {facts->elements, "element", "elements"}, {facts->rigid, "rigid body", "rigid bodies"}};
+    size_t left = 0, used = 0;
+    for (int k = 0; k < 3; k++) left += parts[k].count > 0;
+    text[0] = '\0';
+    for (int k = 0; k < 3 && used < size; k++) {
+        if (parts[k].count == 0) continue;
+        left--;
+        used += (size_t)snprintf(text + used, size - used, "%zu %s%s", parts[k].count, parts[k].count == 1 ? parts[k].one : parts[k].many,
+                                 left > 1    ? ", "
+                                 : left == 1 ? " and "
+                                             : "");
+    }
 }
 
 void ab_results_table(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, FILE *stream) {
@@ -63,9 +71,12 @@ void ab_results_table(const ab_results *results, const ab_state_view *view, cons
     fprintf(stream, "\n  %s: t = %.6g s, %ld steps of %s in %.3g s\n", facts->outcome, view->time, facts->steps, what, facts->wall_seconds);
     fprintf(stream, "  %.3g s of processor time, %d thread%s, %.4g MB at most\n  ", facts->cpu_seconds, facts->threads,
             facts->threads == 1 ? "" : "s", 1e-6 * (double)facts->peak_bytes);
-    if (facts->points > 0 || facts->elements == 0) fprintf(stream, "%.4g million point-steps", 1e-6 * facts->point_steps_per_second);
-    if (facts->points > 0 && facts->elements > 0) fprintf(stream, " and ");
-    if (facts->elements > 0) fprintf(stream, "%.4g million element-steps", 1e-6 * facts->element_steps_per_second);
+    const bool points = facts->points > 0, elements = facts->elements > 0;
+    if (points) fprintf(stream, "%.4g million point-steps", 1e-6 * facts->point_steps_per_second);
+    if (points && elements) fprintf(stream, " and ");
+    if (elements) fprintf(stream, "%.4g million element-steps", 1e-6 * facts->element_steps_per_second);
+    if (!points && !elements)
+        fprintf(stream, "%.4g thousand steps", 1e-3 * (facts->wall_seconds > 0 ? (double)facts->steps / facts->wall_seconds : 0));
     fprintf(stream, " per second\n");
     ledger(results, view, stream);
     contacts(results, view, stream);

@@ -92,3 +92,48 @@ for wanted in ("block", "other", "multi-velocity", "points", "steps", "Not paid 
     assert wanted in text, f"'{wanted}' is not in the plan:\n{text}"
 assert not os.path.exists("results/two"), "a plan writes nothing"
 print("the plan holds")
+
+# Bodies of elements: nodes and elements in place of points, no grid where nothing looks at one, and no points inside elements without a contact that wants them.
+BEAM = """
+abut: 1
+space: plane-strain
+time: {end: 0.02, dt: 1e-5}
+materials:
+  steel: {model: linear-elastic, E: 1 MPa, nu: 0.3, density: 1000}
+bodies:
+  beam: {method: finite-elements, material: steel, mesh: {box: [[0, 0], [4, 1]], elements: [8, 2], type: q8}}
+"""
+REST = """
+  stone: {method: rigid, shape: {box: [[1, 1], [2, 2]]}, motion: {mass: 10, inertia: 1}}
+contact:
+  - {bodies: [stone, beam], algorithm: point-to-segment, response: coulomb, friction: 0.1}
+"""
+SAND = """
+  sand: {method: material-points, material: steel, shape: {box: [[1, 1], [2, 2]]}}
+contact:
+  - {bodies: [sand, beam], algorithm: multi-velocity, response: coulomb, friction: 0.1}
+"""
+
+
+def left_out(found, start):
+    return [line for line in found["not_paid_for"] if line.startswith(start)]
+
+
+beam = plan(write("beam.yaml", BEAM))
+assert beam["bodies"][0]["nodes"] == 3 * 8 * 2 + 2 * (8 + 2) + 1 and beam["bodies"][0]["elements"] == 16, beam["bodies"]
+assert "points" not in beam["bodies"][0] and beam["points"] == 0 and beam["elements"] == 16 and beam["nodes"] == beam["bodies"][0]["nodes"]
+assert left_out(beam, "grid:") and left_out(beam, "points on the grid:") and left_out(beam, "contact:") and not left_out(beam, "empty grid:")
+
+rest = plan(write("rest.yaml", BEAM + REST))
+assert len(left_out(rest, "points on the grid:")) == 2 and left_out(rest, "grid:") and left_out(rest, "stress:"), rest["not_paid_for"]
+assert rest["contacts"][0]["needs"] == ["points and faces of the outlines"] and rest["elements"] == 16 and rest["points"] == 0
+
+sand = plan(write("sand.yaml", BEAM + SAND), "--set", "grid={from: [-1, -1], to: [5, 3], cell: 0.25}")
+assert not left_out(sand, "grid:") and not left_out(sand, "points on the grid:") and left_out(sand, "outlines:"), sand["not_paid_for"]
+assert sand["points"] > 0 and sand["elements"] == 16
+assert "nodes of the grid that both have mass at" in sand["contacts"][0]["needs"]
+
+text = subprocess.run([abut, "plan", "rest.yaml"], capture_output=True, text=True, check=True).stdout
+for wanted in ("69 nodes in 16 elements", "points on the outline", "needs: points and faces of the outlines"):
+    assert wanted in text, f"'{wanted}' is not in the plan:\n{text}"
+print("the plan of bodies with elements holds")

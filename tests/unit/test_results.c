@@ -343,7 +343,14 @@ static void test_points_and_elements_are_counted_apart(void **state) {
     both.points = 0;
     check_speed(&both, "10 steps of 2 elements in 1 s\n", "\n  0.5 million element-steps per second\n",
                 "\"element_steps_per_second\": 500000");
-    both.points = 7, both.elements = 0;
+    both.rigid = 1;
+    check_speed(&both, "10 steps of 2 elements and 1 rigid body in 1 s\n", "\n  0.5 million element-steps per second\n",
+                "\"rigid_bodies\": 1,");
+    both.points = 7, both.rigid = 2;
+    check_speed(&both, "10 steps of 7 points, 2 elements and 2 rigid bodies in 1 s\n", "element-steps", "\"rigid_bodies\": 2,");
+    both.points = both.elements = 0;
+    check_speed(&both, "10 steps of 2 rigid bodies in 1 s\n", "\n  0.01 thousand steps per second\n", "\"points\": 0,");
+    both.points = 7, both.elements = both.rigid = 0;
     check_speed(&both, "10 steps of 7 points in 1 s\n", "\n  3 million point-steps per second\n", "\"elements\": 0,");
 }
 
