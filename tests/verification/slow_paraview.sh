@@ -9,6 +9,8 @@ scratch=${ABUT_SCRATCH:-$(mktemp -d)}
 scene=tests/verification/two_blocks.yaml
 "$build/abut" run $scene --quiet -j 1 -o "$scratch/out" >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 pvpython tests/verification/check_results_paraview.py "$scratch/out"
+"$build/abut" run cases/block_on_beam/scene.yaml --quiet -j 1 -o "$scratch/beam" --set time.end=0.2 >"$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+pvpython tests/verification/check_results_paraview.py "$scratch/beam"
 "$build/abut" run $scene --quiet -j 1 -o "$scratch/killed" --set output.every=1e-4 --set grid.cell=0.02 >"$scratch/log" 2>&1 &
 run=$!
 for _ in $(seq 600); do
