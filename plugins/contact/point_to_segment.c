@@ -472,10 +472,14 @@ static int faces_around(segments *self, int side, const ab_surface *s) {
 }
 
 /* Where both passes see the same piece of surface, each carries half of it: a point gives away half of its area in so far as the vertices of the face under it are
- * contact points too. */
+ * contact points too. Points that are no vertices (two bodies of material points, each with faces) stand all along their own faces. */
 static void share_area(segments *self, const ab_surface *const surface[2], ab_points *out) {
+    int along[2] = {0, 0};
     for (size_t n = 0; n < out->count; ++n)
-        if (self->placed[n].vertex != UINT32_MAX) self->met[self->placed[n].pass][self->placed[n].vertex] = 1;
+        if (self->placed[n].vertex != UINT32_MAX)
+            self->met[self->placed[n].pass][self->placed[n].vertex] = 1;
+        else
+            along[self->placed[n].pass] = 1;
     for (size_t n = 0; n < out->count; ++n) {
         const placed *p = self->placed + n;
         const uint32_t other = 1 - p->pass, *v = surface[other]->face_vertex + 3 * (size_t)p->face;
@@ -483,7 +487,7 @@ static void share_area(segments *self, const ab_surface *const surface[2], ab_po
         double phi[3], covered = 0.0;
         shape(vertices == 3, p->xi, phi);
         for (int k = 0; k < vertices; ++k)
-            if (self->met[other][v[k]]) covered += phi[k];
+            if (self->met[other][v[k]] || along[other]) covered += phi[k];
         out->area[n] *= 1.0 - 0.5 * fmax(0.0, fmin(1.0, covered));
     }
 }
