@@ -260,6 +260,7 @@ ab_status rigid_finish(ab_domain *domain, const ab_step *step, ab_report *report
     }
     book(body, step);
     double offset[2] = {0.0, 0.0}, arm[2];
+    const double before[3] = {body->centre[0], body->centre[1], body->angle};
     body->angle += dt * body->spin;
     body->cosine = cos(body->angle);
     body->sine = sin(body->angle);
@@ -279,7 +280,7 @@ ab_status rigid_finish(ab_domain *domain, const ab_step *step, ab_report *report
     }
     body->reaction[2] +=
         (body->reference[0] + body->origin[0]) * body->reaction[1] - (body->reference[1] + body->origin[1]) * body->reaction[0];
-    body->moved = true;
+    body->moved = body->moved || before[0] != body->centre[0] || before[1] != body->centre[1] || before[2] != body->angle;
     measure(body, offset);
     if (!isfinite(body->energy.kinetic) || !isfinite(body->centre[0]) || !isfinite(body->centre[1]))
         return ab_report_failure(
