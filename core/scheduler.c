@@ -61,7 +61,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     s->energy = calloc(s->body_count + 1, sizeof *s->energy);
     s->energy_start = calloc(s->body_count + 1, sizeof *s->energy_start);
     s->motion = calloc(s->body_count + 1, sizeof *s->motion);
-    s->limit = "";
+    s->limit = "none";
     omp_set_num_threads(options->threads);
     ab_status status = s->domains && s->energy && s->energy_start && s->motion
                            ? AB_OK
