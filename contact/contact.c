@@ -22,7 +22,7 @@ typedef struct contact_all {
 } contact_all;
 
 /* How the dynamic stage has left each point. */
-static void note_history(contact_pair *pair) {
+static void note_history(contact_pair *pair, double dt) {
     static const double STUCK = 1e-9; /* slip that an impulse this many times its own size would end */
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
@@ -38,11 +38,29 @@ static void note_history(contact_pair *pair) {
         history[HISTORY_STATUS * ld + i] = !pushed ? STATUS_FREE : stuck ? STATUS_STICKS : STATUS_SLIPS;
         history[HISTORY_NORMAL * ld + i] = v[0] * nx + v[1] * ny;
         history[HISTORY_TANGENTIAL * ld + i] = vt;
+        history[HISTORY_FORCE * ld + i] = (jx * nx + jy * ny) / dt;
+        history[HISTORY_FRICTION * ld + i] = jt / dt;
+    }
+}
+
+/* Points from surfaces begin with the forces of the last step. Where more of them push than there are freedoms (the two passes say much the same twice) rounds that
+ * begin at nothing would share a force out between them by their order alone, whatever the gaps are; so what one step leaves undone the next goes on with. */
+static void begin_with_last_forces(contact_pair *pair, const contact_side side[2], double dt) {
+    contact_points *points = &pair->points;
+    ab_points *p = &points->view;
+    const size_t ld = p->ld;
+    const double *history = p->state0 + (points->states - HISTORY) * ld;
+    for (size_t i = 0; i < p->count; ++i) {
+        const double jn = dt * history[HISTORY_FORCE * ld + i], jt = dt * history[HISTORY_FRICTION * ld + i];
+        if (jn == 0.0 && jt == 0.0) continue;
+        const double nx = p->normal[i], ny = p->normal[ld + i], j[2] = {jn * nx - jt * ny, jn * ny + jt * nx};
+        for (size_t c = 0; c < 2; ++c) p->impulse[c * ld + i] = points->applied[c * ld + i] = j[c];
+        contact_push(side, i, j);
     }
 }
 
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
-static ab_status prepare(contact_pair *pair, ab_report *report) {
+static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     contact_side side[2];
@@ -59,6 +77,7 @@ static ab_status prepare(contact_pair *pair, ab_report *report) {
         points->relative_old[i] = v[0];
         points->relative_old[p->ld + i] = v[1];
     }
+    if (points->surfaces && stage == AB_STAGE_DYNAMIC) begin_with_last_forces(pair, side, step->dt);
     return AB_OK;
 }
 
@@ -138,7 +157,7 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
         all->found_step = step->number;
     }
     for (size_t k = 0; k < all->count; ++k)
-        if (all->pairs[k].points.view.count) AB_TRY(prepare(all->pairs + k, report));
+        if (all->pairs[k].points.view.count) AB_TRY(prepare(all->pairs + k, step, stage, report));
     AB_TRY(contact_rounds(all->pairs, all->count, stage, all->answered_step == step->number, report));
     if (stage == AB_STAGE_DYNAMIC) {
         all->answered_step = step->number;
@@ -151,7 +170,7 @@ static void settle(ab_interaction *face, const ab_step *step) {
     contact_all *all = (contact_all *)face;
     for (size_t k = 0; k < all->count; ++k) {
         book(all, k, step);
-        note_history(all->pairs + k);
+        note_history(all->pairs + k, step->dt);
         contact_points_remember(&all->pairs[k].points);
     }
 }

@@ -8,8 +8,9 @@
 /* For main: fills the scheduler's table. */
 ab_status contact_create(const ab_scene *, ab_domain **, ab_interaction **, ab_report *);
 
-/* What the loop itself remembers of a point: how it was left by the dynamic stage, and with which relative velocity along and across the normal. */
-enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY };
+/* What the loop itself remembers of a point: how it was left by the dynamic stage, with which relative velocity and with which force along and across the
+ * normal. */
+enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY_FORCE, HISTORY_FRICTION, HISTORY };
 enum { STATUS_FREE, STATUS_SLIPS, STATUS_STICKS };
 
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
