@@ -20,4 +20,4 @@ for _ in $(seq 600); do
 done
 kill -9 $run
 wait $run 2>/dev/null || true
-pvpython tests/verification/check_results_paraview.py "$scratch/killed"
+pvpython tests/verification/check_results_paraview.py "$scratch/killed" killed
