@@ -129,6 +129,8 @@ static double bounding_stiffness(const penalty *law, const ab_points *p, size_t 
     return law->stiffness * p->modulus / p->cell * area;
 }
 
+static const double SOON = 0.1, SOON_STEPS = 4.0; /* of a cell; steps */
+
 static int respond(void *self, ab_points *p, size_t first, size_t count) {
     const penalty *law = self;
     const size_t ld = p->ld, d = p->dimension;
@@ -145,9 +147,11 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
             p->state1[c * ld + i] = 0.0;
         }
         if (law->weakens) p->state1[d * ld + i] = 1.0; /* bodies that are apart slip; when they meet, until kinetic friction holds them */
+        /* the host bounds the next step: springs that the bodies are about to meet count already */
+        if (p->stiffness && law->of == OF_MODULUS && m > 0.0 && depth > -fmax(SOON * p->cell, SOON_STEPS * dt * approach))
+            p->stiffness[i] = bounding_stiffness(law, p, i);
         if (depth > 0.0 && m > 0.0) {
             const double k = normal_stiffness(law, p, i), c_dt = 2.0 * law->damping * sqrt(k * m) * dt, old = lambda;
-            if (p->stiffness && law->of == OF_MODULUS) p->stiffness[i] = bounding_stiffness(law, p, i);
             /* lambda = dt k depth + dt c (approach without lambda - lambda/m) */
             lambda = fmax(0.0, (dt * k * depth + c_dt * (approach + old / m)) / (1.0 + c_dt / m));
             if (law->friction > 0.0 && mt > 0.0) {
