@@ -15,6 +15,7 @@
 struct ab_expression {
     muParserHandle_t parser;
     double variable[4]; /* t, x, y, z */
+    unsigned used;      /* of them: enum ab_variables */
 };
 
 typedef struct constant {
@@ -167,7 +168,7 @@ static bool has_assignment(const char *text) {
     return false;
 }
 
-static ab_status own_parser(ab_formulas *formulas, const char *text, ab_number *number, char *why, size_t size) {
+static ab_status own_parser(ab_formulas *formulas, const char *text, unsigned used, ab_number *number, char *why, size_t size) {
     if (formulas->expression_count == AB_FORMULA_COUNT) {
         snprintf(why, size, "more than %d formulas in one scene", AB_FORMULA_COUNT);
         return AB_BAD_INPUT;
@@ -179,6 +180,7 @@ static ab_status own_parser(ab_formulas *formulas, const char *text, ab_number *
         return AB_FAILED;
     }
     mupSetExpr(own->parser, text);
+    own->used = used;
     formulas->expressions[formulas->expression_count++] = own;
     number->value = 1;
     number->expression = own;
@@ -234,7 +236,7 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
         snprintf(why, why_size, "'%s' cannot be used in this value; %s", variables_all[first], here(variables));
         return AB_BAD_INPUT;
     }
-    if (found != 0) return own_parser(formulas, text, number, why, why_size);
+    if (found != 0) return own_parser(formulas, text, found, number, why, why_size);
     if (!isfinite(value)) {
         snprintf(why, why_size, "'%.64s' is %s, not a finite number", text, isnan(value) ? "nan (undefined)" : "infinite");
         return AB_BAD_INPUT;
@@ -242,6 +244,8 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
     number->value = value;
     return AB_OK;
 }
+
+unsigned ab_number_variables(const ab_number *number) { return number->expression == NULL ? AB_NO_VARIABLE : number->expression->used; }
 
 double ab_number_at(const ab_number *number, double t, double x, double y, double z) {
     if (number->expression == NULL) return number->value;

@@ -19,7 +19,16 @@ double ab_number_at(const ab_number *number, double t, double x, double y, doubl
 static inline bool ab_number_is_constant(const ab_number *number) { return number->expression == NULL; }
 
 /* Variables that a formula may use. */
-enum ab_variables { AB_NO_VARIABLE = 0, AB_VARIABLE_T = 1, AB_VARIABLE_X = 2, AB_VARIABLE_Y = 4, AB_VARIABLES_XY = 6 };
+enum ab_variables {
+    AB_NO_VARIABLE = 0,
+    AB_VARIABLE_T = 1,
+    AB_VARIABLE_X = 2,
+    AB_VARIABLE_Y = 4,
+    AB_VARIABLES_XY = 6,
+    AB_VARIABLES_TXY = 7
+};
+/* Those that this one uses. */
+unsigned ab_number_variables(const ab_number *number);
 
 enum ab_formula_limits {
     AB_FORMULA_TEXT = 2000,

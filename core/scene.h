@@ -109,7 +109,9 @@ typedef struct ab_load_spec {
     ab_mark mark;
     size_t body;
     ab_where where;
-    ab_number traction[2]; /* Pa, formulas of t */
+    ab_number traction[2]; /* Pa, formulas of t and of the place x, y at the start */
+    bool press;            /* a pressure instead of the traction */
+    ab_number pressure;    /* Pa, against the outline as it lies now; a formula of t and of the place x, y at the start */
     bool point;            /* a force at one place instead */
     double at[2];          /* m: the node nearest to it carries the force; of a rigid body the place itself */
     ab_number force[2];    /* N (per m of thickness), formulas of t */

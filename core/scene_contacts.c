@@ -153,7 +153,7 @@ void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
     if (bodies > 1) warn_strangers(r, &all);
 }
 
-/* Points carry no forces of their own, rigid bodies no tractions. */
+/* Points carry no forces of their own, rigid bodies no tractions or pressures. */
 static void check_load_method(ab_scene_reader *r, const ab_node *const *v, const char *where, const ab_load_spec *load) {
     const ab_body_spec *body = &r->scene->bodies[load->body];
     if (body->method == NULL) return;
@@ -163,12 +163,34 @@ static void check_load_method(ab_scene_reader *r, const ab_node *const *v, const
                         "%s: a force at one place of material points makes a hole there, not a load; spread it over part of the outline of "
                         "'%s': where: {side: top, x: [a, b]}, traction: [.., ..] (force by length)",
                         where, body->name);
-    node = v[LOAD_TRACTION] != NULL ? v[LOAD_TRACTION] : v[LOAD_WHERE];
+    node = load->press ? v[LOAD_PRESSURE] : v[LOAD_TRACTION] != NULL ? v[LOAD_TRACTION] : v[LOAD_WHERE];
     if (!load->point && strcmp(body->method, "rigid") == 0)
-        ab_report_error(
-            r->base.report, node->mark,
-            "%s: '%s' is rigid, so only the sum of a traction would count; write that sum: at: [x, y] (its middle), force: [.., ..]", where,
-            body->name);
+        ab_report_error(r->base.report, node->mark,
+                        "%s: '%s' is rigid, so only the sum of a %s would count; write that sum: at: [x, y] (its middle), force: [.., ..]",
+                        where, body->name, load->press ? "pressure" : "traction");
+}
+
+/* Which kind of load it is, and whether all that belongs to it is there. False: no kind. */
+static bool take_kind(ab_scene_reader *r, const ab_node *node, const ab_node *const *v, const char *where, ab_load_spec *load) {
+    const bool spread = v[LOAD_WHERE] != NULL || v[LOAD_TRACTION] != NULL || v[LOAD_PRESSURE] != NULL;
+    load->point = v[LOAD_AT] != NULL || v[LOAD_FORCE] != NULL;
+    load->press = v[LOAD_PRESSURE] != NULL;
+    if (spread == load->point) {
+        ab_report_error(r->base.report, node->mark, "%s needs where and traction (or pressure), or at and force%s", where,
+                        spread ? ", not of both" : "");
+        return false;
+    }
+    if (load->press && v[LOAD_TRACTION] != NULL) {
+        ab_report_error(r->base.report, v[LOAD_PRESSURE]->mark, "%s has a traction and a pressure; write one entry for each", where);
+        return false;
+    }
+    for (int k = LOAD_WHERE; k <= LOAD_FORCE; k++) {
+        const bool stands_in = k == LOAD_PRESSURE || (k == LOAD_TRACTION && load->press);
+        if (v[k] == NULL && !stands_in && (k >= LOAD_AT) == load->point)
+            ab_report_error(r->base.report, node->mark, "key '%s'%s is missing in %s: %s", ab_section_load.keys[k].name,
+                            k == LOAD_TRACTION ? " or 'pressure'" : "", where, ab_section_load.keys[k].help);
+    }
+    return true;
 }
 
 static void take_load(ab_scene_reader *r, const ab_node *node, const char *where, ab_load_spec *load) {
@@ -186,24 +208,18 @@ static void take_load(ab_scene_reader *r, const ab_node *node, const char *where
     if (v[LOAD_WHERE] != NULL) ab_scene_take_where(r, v[LOAD_WHERE], ab_where_join(path, where, "where"), &load->where);
     const ab_key *key = ab_section_load.keys;
     ab_read_vector(&r->base, &key[LOAD_TRACTION], v[LOAD_TRACTION], where, load->traction);
+    ab_read_formula(&r->base, &key[LOAD_PRESSURE], v[LOAD_PRESSURE], where, &load->pressure);
     ab_read_point(&r->base, &key[LOAD_AT], v[LOAD_AT], where, load->at);
     ab_read_vector(&r->base, &key[LOAD_FORCE], v[LOAD_FORCE], where, load->force);
-    const bool spread = v[LOAD_WHERE] != NULL || v[LOAD_TRACTION] != NULL;
-    load->point = v[LOAD_AT] != NULL || v[LOAD_FORCE] != NULL;
-    if (spread == load->point) {
-        ab_report_error(r->base.report, node->mark, "%s needs where and traction, or at and force%s", where, spread ? ", not of both" : "");
-        return;
-    }
-    for (int k = LOAD_WHERE; k <= LOAD_FORCE; k++)
-        if (v[k] == NULL && (k >= LOAD_AT) == load->point)
-            ab_report_error(r->base.report, node->mark, "key '%s' is missing in %s: %s", key[k].name, where, key[k].help);
-    if (known) check_load_method(r, v, where, load);
+    if (take_kind(r, node, v, where, load) && known) check_load_method(r, v, where, load);
 }
 
 void ab_scene_take_loads(ab_scene_reader *r, const ab_node *node) {
     ab_scene *scene = r->scene;
     if (node == NULL ||
-        !ab_scene_is_list(r, node, "loads", "entries - {body: ..., where: ..., traction: ...} or {body: ..., at: ..., force: ...}"))
+        !ab_scene_is_list(
+            r, node, "loads",
+            "entries - {body: ..., where: ..., traction: ...}, {body: ..., where: ..., pressure: ...} or {body: ..., at: ..., force: ...}"))
         return;
     if (node->count > MOST_ENTRIES) {
         ab_report_error(r->base.report, node->mark, "loads has %zu entries, more than %d", node->count, MOST_ENTRIES);

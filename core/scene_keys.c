@@ -27,7 +27,7 @@ static const ab_key top[] = {
     [TOP_MATERIALS] = {"materials", AB_KEY_SECTION, .help = "materials by name; all bodies but rigid ones need one"},
     [TOP_BODIES] = {"bodies", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "bodies by name"},
     [TOP_CONTACT] = {"contact", AB_KEY_SECTION, .help = "list of pairs of bodies that meet"},
-    [TOP_LOADS] = {"loads", AB_KEY_SECTION, .help = "list of tractions on outlines and forces at places"},
+    [TOP_LOADS] = {"loads", AB_KEY_SECTION, .help = "list of tractions and pressures on outlines, and forces at places"},
     [TOP_MONITORS] = {"monitors", AB_KEY_SECTION, .help = "list of single numbers followed in time"},
     [TOP_HISTORY] = {"history", AB_KEY_SECTION, .help = "rows of history.csv"},
     [TOP_OUTPUT] = {"output", AB_KEY_SECTION, .help = "frames of results.h5"},
@@ -248,17 +248,23 @@ SECTION(contact, "contact[i]", contact, "every setting that the algorithm or the
 
 static const ab_key load[] = {
     [LOAD_BODY] = {"body", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a body"},
-    [LOAD_WHERE] = {"where", AB_KEY_SECTION, .help = "part of its outline at the start; with traction"},
-    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .variables = AB_VARIABLE_T,
-                       .help = "force per area; follows the points; material-points, finite-elements"},
+    [LOAD_WHERE] = {"where", AB_KEY_SECTION, .help = "part of its outline at the start; with traction or pressure"},
+    [LOAD_TRACTION] = {"traction", AB_KEY_VECTOR, .unit = "Pa", .variables = AB_VARIABLES_TXY,
+                       .help = "force per area as it was at the start; its direction stays; x, y: the place at the start; material-points, "
+                               "finite-elements"},
+    [LOAD_PRESSURE] = {"pressure", AB_KEY_FORMULA, .unit = "Pa", .variables = AB_VARIABLES_TXY,
+                       .help = "in place of traction: force per area as it is now, against the outline as it lies now; x, y: the place at "
+                               "the start; material-points, finite-elements"},
     [LOAD_AT] = {"at", AB_KEY_POINT, .unit = "m",
                  .help =
                      "a place at the start, with force: of finite elements the nearest node is taken, of a rigid body the place itself"},
     [LOAD_FORCE] = {"force", AB_KEY_VECTOR, .unit = "N", .variables = AB_VARIABLE_T,
                     .help = "force (per m of thickness) on that place of the body; finite-elements, rigid"},
 };
-SECTION(load, "loads[i]", load, NULL, "A list. `where` with `traction`, or `at` with `force`.",
-        "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n  - {body: beam, at: [3.75, 0.25], force: "
+SECTION(load, "loads[i]", load, NULL, "A list. `where` with `traction` or `pressure`, or `at` with `force`.",
+        "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n  - {body: wall, where: {side: left}, "
+        "pressure: "
+        "\"9.81e3*max(0, 5-y)\"}\n  - {body: beam, at: [3.75, 0.25], force: "
         "[0, \"-2 kN\"]}\n");
 
 static const ab_key where[] = {

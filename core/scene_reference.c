@@ -14,11 +14,12 @@ static const char *type_name(const ab_key *key) {
     case AB_KEY_NAME: return "name";
     case AB_KEY_TEXT: return "text";
     case AB_KEY_POINT: return "[x, y]";
-    case AB_KEY_FORMULA: return "formula of t";
+    case AB_KEY_FORMULA: return key->variables == AB_VARIABLES_TXY ? "formula of t, x, y" : "formula of t";
     case AB_KEY_VECTOR:
-        return key->variables == AB_VARIABLE_T     ? "[x, y], formulas of t"
-               : key->variables == AB_VARIABLES_XY ? "[x, y], formulas of x, y"
-                                                   : "[x, y]";
+        return key->variables == AB_VARIABLE_T      ? "[x, y], formulas of t"
+               : key->variables == AB_VARIABLES_XY  ? "[x, y], formulas of x, y"
+               : key->variables == AB_VARIABLES_TXY ? "[x, y], formulas of t, x, y"
+                                                    : "[x, y]";
     default: return "mapping or list";
     }
 }

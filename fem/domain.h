@@ -45,9 +45,10 @@ typedef struct fem_node_sums {                            /* of FEM_RUN nodes */
 
 typedef enum fem_trouble { FEM_FINE = 0, FEM_INVERTED, FEM_MATERIAL } fem_trouble;
 
-typedef struct fem_load { /* a node's share of a load */
-    uint32_t node, spec;  /* which load of the scene */
-    double weight;        /* m; of a point force: 1 */
+typedef struct fem_load {   /* on an outer face, or on one node */
+    uint32_t node[3], spec; /* first, last, middle of the face, FEM_NONE: no such; which load of the scene */
+    double share[3];        /* m: integrals of their basis functions along the face at the start; of a point force 1 */
+    double force[3][2];     /* N: in this step */
 } fem_load;
 
 typedef struct fem_held { /* a direction of a node whose velocity is given */

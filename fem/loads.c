@@ -1,27 +1,46 @@
-/* loads.c: tractions on the outer faces, forces at nodes, and nodes whose velocity is given. A traction acts on the initial length of a face and keeps its direction,
- * as on material points; its share for a node is the integral of the node's basis function along the face. */
+/* loads.c: tractions and pressures on the outer faces, forces at nodes, and nodes whose velocity is given. A traction acts on the initial length of a face and keeps
+ * its direction, as on material points; a pressure acts on the face as it lies now. Nodes get the integrals of their basis functions along the face. */
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "fem/domain.h"
 
 /* ---- loads --------------------------------------------------------------------------------------------------------------- */
 
-/* Integrals of the two or three basis functions along a face, m: first, last, middle. */
-static void face_shares(const fem_mesh *mesh, const uint32_t *vertex, double share[3]) {
-    static const double PLACE[3] = {-0.7745966692414834, 0.0, 0.7745966692414834}, WEIGHT[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
-    const double *a = mesh->x + 2 * (size_t)vertex[0], *b = mesh->x + 2 * (size_t)vertex[1];
+enum { PLACES = 3 }; /* of Gauss on a face: exact for a parabola of traction or pressure on a straight face */
+static const double PLACE[PLACES] = {-0.7745966692414834, 0.0, 0.7745966692414834}, WEIGHT[PLACES] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+
+typedef struct face_point {
+    double n[3];             /* basis functions of the first, last and middle node */
+    double place[2], run[2]; /* m: where it is, and its derivative from -1 (first) to 1 (last) */
+} face_point;
+
+static face_point point_on(const double *pairs, const uint32_t node[3], double s) {
+    const bool bent = node[2] != FEM_NONE;
+    face_point p = {.n = {0.5 * (1.0 - s), 0.5 * (1.0 + s), 0.0}};
+    double d[3] = {-0.5, 0.5, 0.0};
+    if (bent) {
+        p = (face_point){.n = {0.5 * s * (s - 1.0), 0.5 * s * (s + 1.0), 1.0 - s * s}};
+        d[0] = s - 0.5, d[1] = s + 0.5, d[2] = -2.0 * s;
+    }
+    for (int k = 0; k < (bent ? 3 : 2); ++k)
+        for (size_t c = 0; c < 2; ++c) {
+            p.place[c] += p.n[k] * pairs[2 * (size_t)node[k] + c];
+            p.run[c] += d[k] * pairs[2 * (size_t)node[k] + c];
+        }
+    return p;
+}
+
+/* Integrals of the basis functions along a face as it is drawn, m; the two of a linear one are the same to the last bit. */
+static void face_shares(const double *pairs, const uint32_t node[3], double share[3]) {
     share[0] = share[1] = share[2] = 0.0;
-    if (vertex[2] == FEM_NONE) {
-        share[0] = share[1] = 0.5 * hypot(b[0] - a[0], b[1] - a[1]);
-        return;
+    for (int q = 0; q < PLACES; ++q) {
+        const face_point p = point_on(pairs, node, PLACE[q]);
+        const double length = WEIGHT[q] * hypot(p.run[0], p.run[1]);
+        for (int k = 0; k < 3; ++k) share[k] += p.n[k] * length;
     }
-    const double *m = mesh->x + 2 * (size_t)vertex[2];
-    for (int q = 0; q < 3; ++q) {
-        const double s = PLACE[q], n[3] = {0.5 * s * (s - 1.0), 0.5 * s * (s + 1.0), 1.0 - s * s}, d[3] = {s - 0.5, s + 0.5, -2.0 * s};
-        const double tx = d[0] * a[0] + d[1] * b[0] + d[2] * m[0], ty = d[0] * a[1] + d[1] * b[1] + d[2] * m[1];
-        for (int k = 0; k < 3; ++k) share[k] += WEIGHT[q] * n[k] * hypot(tx, ty);
-    }
+    if (node[2] == FEM_NONE) share[0] = share[1] = 0.5 * (share[0] + share[1]);
 }
 
 static uint32_t nearest_node(const fem_mesh *mesh, const double at[2]) {
@@ -34,76 +53,94 @@ static uint32_t nearest_node(const fem_mesh *mesh, const double at[2]) {
     return best;
 }
 
-/* One load's shares go to `share`, a number per node. False: it meets nothing. */
-static bool spread(const fem_body *body, const fem_faces *faces, const ab_load_spec *load, double *share) {
-    for (size_t i = 0; i < body->nodes; ++i) share[i] = 0.0;
+static ab_status add_load(fem_body *body, const fem_load *load, ab_report *report) {
+    if (!ab_memory_grow((void **)&body->loads, &body->load_capacity, body->load_count + 1, sizeof *body->loads))
+        return ab_report_failure(report, "body '%s': no memory for its loads", body->domain.spec->name);
+    body->loads[body->load_count++] = *load;
+    return AB_OK;
+}
+
+static ab_status spread(fem_body *body, const fem_faces *faces, uint32_t spec, ab_report *report) {
+    const ab_load_spec *load = body->scene->loads + spec;
     if (load->point) {
-        share[nearest_node(body->mesh, load->at)] = 1.0;
-        return true;
+        const fem_load one = {.node = {nearest_node(body->mesh, load->at), FEM_NONE, FEM_NONE}, .spec = spec, .share = {1.0, 0.0, 0.0}};
+        return add_load(body, &one, report);
     }
-    bool met = false;
+    const size_t before = body->load_count;
     for (size_t f = 0; f < faces->count; ++f) {
         if (!fem_where_face(&load->where, body->mesh, faces, f)) continue;
-        met = true;
-        double part[3];
-        face_shares(body->mesh, faces->vertex + 3 * f, part);
-        for (int k = 0; k < 3; ++k)
-            if (faces->vertex[3 * f + (size_t)k] != FEM_NONE) share[faces->vertex[3 * f + (size_t)k]] += part[k];
+        fem_load one = {.spec = spec};
+        memcpy(one.node, faces->vertex + 3 * f, sizeof one.node);
+        face_shares(body->mesh->x, one.node, one.share);
+        AB_TRY(add_load(body, &one, report));
     }
-    return met;
+    if (body->load_count > before) return AB_OK;
+    return ab_report_error(report, load->mark,
+                           "loads[%u] meets no outer face of '%s'; use side: left|right|top|bottom or a place on its outline", spec,
+                           body->domain.spec->name);
 }
 
 ab_status fem_loads_create(fem_body *body, const fem_faces *faces, ab_report *report) {
-    const ab_scene *scene = body->scene;
-    double *share = ab_memory_take(body->nodes * sizeof *share);
-    ab_status status = share ? AB_OK : ab_report_failure(report, "body '%s': no memory for its loads", body->domain.spec->name);
-    size_t capacity = 0;
-    for (size_t k = 0; status == AB_OK && k < scene->load_count; ++k) {
-        const ab_load_spec *load = scene->loads + k;
-        if (load->body != body->domain.index) continue;
-        if (!spread(body, faces, load, share)) {
-            status = ab_report_error(report, load->mark,
-                                     "loads[%zu] meets no outer face of '%s'; use side: left|right|top|bottom or a place on its outline", k,
-                                     body->domain.spec->name);
-            break;
-        }
-        for (size_t i = 0; i < body->nodes; ++i) {
-            if (share[i] == 0.0) continue;
-            if (!ab_memory_grow((void **)&body->loads, &capacity, body->load_count + 1, sizeof *body->loads)) {
-                status = ab_report_failure(report, "body '%s': no memory for its loads", body->domain.spec->name);
-                break;
-            }
-            body->loads[body->load_count++] = (fem_load){(uint32_t)i, (uint32_t)k, share[i]};
-        }
-    }
-    body->load_capacity = capacity;
-    ab_memory_give(share, body->nodes * sizeof *share);
-    return status;
+    for (size_t k = 0; k < body->scene->load_count; ++k)
+        if (body->scene->loads[k].body == body->domain.index) AB_TRY(spread(body, faces, (uint32_t)k, report));
+    return AB_OK;
 }
 
-static void load_force(const fem_body *body, uint32_t spec, double time, double force[2]) {
-    const ab_load_spec *load = body->scene->loads + spec;
-    for (int c = 0; c < 2; ++c) force[c] = ab_number_at((load->point ? load->force : load->traction) + c, time, 0.0, 0.0, 0.0);
+/* A pressure, or a traction that depends on the place: force = integral of N (-p n or t) along the face. */
+static void integrate(const fem_body *body, const ab_load_spec *spec, double time, fem_load *load) {
+    memset(load->force, 0, sizeof load->force);
+    for (int q = 0; q < PLACES; ++q) {
+        const face_point start = point_on(body->mesh->x, load->node, PLACE[q]);
+        const double x = start.place[0], y = start.place[1];
+        double per_run[2]; /* N: force along a unit of -1 .. 1 */
+        if (spec->press) {
+            const face_point now = point_on(body->x, load->node, PLACE[q]);
+            const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
+            per_run[0] = -p * now.run[1], per_run[1] = p * now.run[0]; /* the body is on the left of a face */
+        } else {
+            for (int c = 0; c < 2; ++c) per_run[c] = hypot(start.run[0], start.run[1]) * ab_number_at(spec->traction + c, time, x, y, 0.0);
+        }
+        for (int k = 0; k < 3; ++k)
+            for (int c = 0; c < 2; ++c) load->force[k][c] += WEIGHT[q] * start.n[k] * per_run[c];
+    }
+}
+
+static bool uniform(const ab_load_spec *spec) {
+    if (spec->point) return true;
+    const unsigned used = ab_number_variables(spec->traction) | ab_number_variables(spec->traction + 1);
+    return !spec->press && !(used & AB_VARIABLES_XY);
 }
 
 void fem_loads_add(fem_body *body, const ab_step *step) {
+    const double time = step->time + 0.5 * step->dt;
     double force[2] = {0.0, 0.0};
+    bool same = false;
     for (size_t k = 0; k < body->load_count; ++k) {
-        const fem_load *load = body->loads + k;
-        if (k == 0 || load->spec != load[-1].spec) load_force(body, load->spec, step->time + 0.5 * step->dt, force);
-        for (size_t c = 0; c < 2; ++c) body->force[2 * (size_t)load->node + c] += load->weight * force[c];
+        fem_load *load = body->loads + k;
+        const ab_load_spec *spec = body->scene->loads + load->spec;
+        if (k == 0 || load->spec != load[-1].spec) {
+            same = uniform(spec);
+            for (int c = 0; c < 2 && same; ++c)
+                force[c] = ab_number_at((spec->point ? spec->force : spec->traction) + c, time, 0.0, 0.0, 0.0);
+        }
+        if (same)
+            for (int a = 0; a < 3; ++a)
+                for (int c = 0; c < 2; ++c) load->force[a][c] = load->share[a] * force[c];
+        else
+            integrate(body, spec, time, load);
+        for (int a = 0; a < 3 && load->node[a] != FEM_NONE; ++a)
+            for (size_t c = 0; c < 2; ++c) body->force[2 * (size_t)load->node[a] + c] += load->force[a][c];
     }
 }
 
 void fem_loads_work(fem_body *body, const ab_step *step) {
-    double force[2] = {0.0, 0.0};
     for (size_t k = 0; k < body->load_count; ++k) {
         const fem_load *load = body->loads + k;
-        if (k == 0 || load->spec != load[-1].spec) load_force(body, load->spec, step->time + 0.5 * step->dt, force);
-        for (size_t c = 0; c < 2; ++c) {
-            const size_t d = 2 * (size_t)load->node + c;
-            body->energy.external += step->dt * load->weight * force[c] * 0.5 * (body->velocity[d] + body->old[d]);
-        }
+        for (int a = 0; a < 3 && load->node[a] != FEM_NONE; ++a)
+            for (size_t c = 0; c < 2; ++c) {
+                const size_t d = 2 * (size_t)load->node[a] + c;
+                body->energy.external += step->dt * load->force[a][c] * 0.5 * (body->velocity[d] + body->old[d]);
+            }
     }
 }
 

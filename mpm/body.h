@@ -51,12 +51,16 @@ typedef struct mpm_tile {
     bool held;                      /* some node on or beyond a roller or fixed side */
 } mpm_tile;
 
-typedef struct mpm_load { /* a piece of outline with a traction */
-    uint32_t id;          /* of the point under it */
-    uint32_t spec;        /* which load of the scene */
-    double length;        /* m, at the start */
-    double arm[2];        /* m, from the point to the middle of the piece; follows the material */
-    double half[2];       /* m, from there to its end */
+typedef struct mpm_load {      /* a piece of outline with a traction or a pressure */
+    uint32_t id;               /* of the point under it */
+    uint32_t spec;             /* which load of the scene */
+    double length;             /* m, at the start */
+    double arm[2];             /* m, from the point to the middle of the piece; follows the material */
+    double half[2];            /* m, from there to its end, the body on the left */
+    double place[2];           /* m, of its middle at the start, as drawn */
+    uint32_t prior, next;      /* loads of the same pressure on the pieces before and behind it; UINT32_MAX: none */
+    double now[2], stretch[2]; /* m, where its middle is in this step, and from there to its end */
+    double force[2];           /* N, in this step */
 } mpm_load;
 
 typedef struct

@@ -1,4 +1,5 @@
-/* loads.c: tractions on a body's outline. A traction acts on the outline's initial length and keeps its direction.
+/* loads.c: tractions and pressures on a body's outline. A traction acts on the outline's initial length and keeps its direction, a pressure on the outline as
+ * it lies now: each piece stretches and turns with the point under it, and meets its neighbours half-way.
  *
  * The gimp basis averages hat functions over the points' domains, so that the internal force of a uniform stress is the integral of hat functions over
  * the surface of the domains. A traction is mapped in the same way, hats averaged over the piece of outline where it stands now, and balances that stress
@@ -8,41 +9,64 @@
 
 #include "core/memory.h"
 #include "mpm/body.h"
+#include "mpm/outline.h"
+
+/* Neighbours among the pieces under one pressure; load[s]: 1 + place in the list of piece s. An outline that does not close has none. */
+static bool join_pieces(mpm_body *body, const ab_fill *fill, const uint32_t *load) {
+    uint32_t *following = malloc((fill->surface_count + 1) * sizeof *following);
+    const ab_status status = following ? mpm_pieces_chain(fill, following) : AB_FAILED;
+    for (size_t s = 0; s < fill->surface_count && status == AB_OK; ++s) {
+        if (!load[s] || !load[following[s]]) continue;
+        body->loads[load[s] - 1].next = load[following[s]] - 1;
+        body->loads[load[following[s]] - 1].prior = load[s] - 1;
+    }
+    free(following);
+    return status != AB_FAILED;
+}
+
+/* One load's pieces of outline, to the end of the list. */
+static bool take_pieces(mpm_body *body, const ab_fill *fill, uint32_t spec) {
+    uint32_t *load = calloc(fill->surface_count + 1, sizeof *load);
+    if (!load) return false;
+    for (size_t s = 0; s < fill->surface_count; ++s) {
+        const ab_outline_piece *piece = fill->surface + s;
+        if (!ab_where_holds(&body->scene->loads[spec].where, fill, piece)) continue;
+        const double half = 0.5 * piece->length;
+        body->loads[body->load_count++] =
+            (mpm_load){.id = piece->point,
+                       .spec = spec,
+                       .length = piece->length,
+                       .arm = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
+                       .half = {-half * piece->normal[1], half * piece->normal[0]},
+                       .place = {piece->position[0], piece->position[1]},
+                       .prior = UINT32_MAX,
+                       .next = UINT32_MAX};
+        load[s] = (uint32_t)body->load_count;
+    }
+    const bool good = !body->scene->loads[spec].press || join_pieces(body, fill, load);
+    free(load);
+    return good;
+}
 
 ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *report) {
     const ab_scene *scene = body->scene;
     size_t count = 0;
-    for (int pass = 0; pass < 2; ++pass) {
-        count = 0;
-        for (size_t k = 0; k < scene->load_count; ++k) {
-            if (scene->loads[k].body != body->domain.index) continue;
-            const size_t before = count;
-            for (size_t s = 0; s < fill->surface_count; ++s) {
-                if (!ab_where_holds(&scene->loads[k].where, fill, fill->surface + s)) continue;
-                if (pass) {
-                    const ab_outline_piece *piece = fill->surface + s;
-                    const double arm[2] = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
-                                 half = 0.5 * piece->length;
-                    body->loads[count] = (mpm_load){
-                        piece->point, (uint32_t)k, piece->length, {arm[0], arm[1]}, {-half * piece->normal[1], half * piece->normal[0]}};
-                }
-                ++count;
-            }
-            if (count == before)
-                return ab_report_error(
-                    report, scene->loads[k].mark,
-                    "loads[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", k,
-                    body->domain.spec->name);
-        }
-        if (count == 0) return AB_OK;
-        if (!pass) {
-            body->loads = malloc(count * sizeof *body->loads);
-            if (!body->loads || !mpm_points_index(body))
-                return ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
-        }
+    for (size_t k = 0; k < scene->load_count; ++k) {
+        if (scene->loads[k].body != body->domain.index) continue;
+        const size_t before = count;
+        for (size_t s = 0; s < fill->surface_count; ++s) count += ab_where_holds(&scene->loads[k].where, fill, fill->surface + s);
+        if (count == before)
+            return ab_report_error(
+                report, scene->loads[k].mark,
+                "loads[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", k,
+                body->domain.spec->name);
     }
-    body->load_count = count;
-    return AB_OK;
+    if (count == 0) return AB_OK;
+    body->loads = malloc(count * sizeof *body->loads);
+    bool good = body->loads && mpm_points_index(body);
+    for (size_t k = 0; k < scene->load_count && good; ++k)
+        if (scene->loads[k].body == body->domain.index) good = take_pieces(body, fill, (uint32_t)k);
+    return good ? AB_OK : ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
 }
 
 typedef struct reach {
@@ -69,6 +93,13 @@ static void average_hats(double s, double l, double n[3]) {
     }
 }
 
+/* The same, over no more than the point's own domain [x-domain, x+domain]: beyond it there are nodes that the body gives no mass, and force on them would be lost.
+ * A piece along a side of its domain is within it; of one that runs across, the part about its middle is taken, so that its moment stays. */
+static void average_near(double s, double l, double x, double domain, double n[3]) {
+    const double off = fmin(fmax(s - x, -domain), domain);
+    average_hats(x + off, fmin(l, domain - fabs(off)), n);
+}
+
 /* The nodes that carry a load: values, gradients at the point under it, and places in its tile's patch. */
 static reach reach_of(const mpm_body *body, const mpm_load *load) {
     const uint32_t slot = body->slot[load->id];
@@ -83,7 +114,8 @@ static reach reach_of(const mpm_body *body, const mpm_load *load) {
     for (int c = 0; c < 2; ++c) {
         for (int i = 0; i < nodes; ++i) n[c][i] = w.n[c][i][l];
         if (nodes == 3)
-            average_hats((block[8 * (ROW_X + c) + l] + load->arm[c]) * body->inverse_h - first[c], fabs(load->half[c]) * body->inverse_h,
+            average_near(load->now[c] * body->inverse_h - first[c], fabs(load->stretch[c]) * body->inverse_h,
+                         block[8 * (ROW_X + c) + l] * body->inverse_h - first[c], block[8 * (body->rows.half + c) + l] * body->inverse_h,
                          n[c]);
     }
     for (int j = 0; j < nodes; ++j)
@@ -96,42 +128,78 @@ static reach reach_of(const mpm_body *body, const mpm_load *load) {
     return r;
 }
 
-static void load_force(const mpm_body *body, const mpm_load *load, double time, double force[2]) {
-    for (int c = 0; c < 2; ++c) force[c] = load->length * ab_number_at(body->scene->loads[load->spec].traction + c, time, 0.0, 0.0, 0.0);
+/* Where a piece is by the point under it. */
+static void own_place(const mpm_body *body, const mpm_load *load, double middle[2]) {
+    const uint32_t slot = body->slot[load->id];
+    const double *point = mpm_block(body, slot / 8) + slot % 8;
+    for (int c = 0; c < 2; ++c) middle[c] = point[8 * (ROW_X + c)] + load->arm[c];
+}
+
+/* The end of a piece (sign 1) or its beginning (-1): half-way between what its point and that of its neighbour say. So pieces under a pressure hang together,
+ * and all around a body it has neither sum nor moment, however the points differ. */
+static void end_of(const mpm_body *body, const mpm_load *load, uint32_t neighbour, double sign, double end[2]) {
+    own_place(body, load, end);
+    for (int c = 0; c < 2; ++c) end[c] += sign * load->half[c];
+    if (neighbour == UINT32_MAX || body->slot[body->loads[neighbour].id] == UINT32_MAX) return;
+    const mpm_load *other = body->loads + neighbour;
+    double theirs[2];
+    own_place(body, other, theirs);
+    for (int c = 0; c < 2; ++c) end[c] = 0.5 * (end[c] + theirs[c] - sign * other->half[c]);
+}
+
+static void find_force(const mpm_body *body, double time, mpm_load *load) {
+    const ab_load_spec *spec = body->scene->loads + load->spec;
+    const double x = load->place[0], y = load->place[1];
+    if (spec->press) {
+        double from[2], to[2];
+        end_of(body, load, load->prior, -1.0, from);
+        end_of(body, load, load->next, 1.0, to);
+        for (int c = 0; c < 2; ++c) {
+            load->now[c] = 0.5 * (from[c] + to[c]);
+            load->stretch[c] = 0.5 * (to[c] - from[c]);
+        }
+        const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
+        load->force[0] = -2.0 * p * load->stretch[1];
+        load->force[1] = 2.0 * p * load->stretch[0];
+    } else {
+        own_place(body, load, load->now);
+        for (int c = 0; c < 2; ++c) {
+            load->stretch[c] = load->half[c];
+            load->force[c] = load->length * ab_number_at(spec->traction + c, time, x, y, 0.0);
+        }
+    }
 }
 
 void mpm_loads_scatter(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
-        if (body->slot[body->loads[k].id] == UINT32_MAX) continue;
-        double force[2];
-        load_force(body, body->loads + k, step->time + 0.5 * step->dt, force);
-        const reach r = reach_of(body, body->loads + k);
+        mpm_load *load = body->loads + k;
+        if (body->slot[load->id] == UINT32_MAX) continue;
+        find_force(body, step->time + 0.5 * step->dt, load);
+        const reach r = reach_of(body, load);
         double *patch = body->patches + (size_t)r.tile->patch * PATCH_DOUBLES;
         for (int i = 0; i < r.count; ++i)
-            for (int c = 0; c < 2; ++c) patch[8 * r.node[i] + NODE_FORCE_X + (size_t)c] += r.n[i] * force[c];
+            for (int c = 0; c < 2; ++c) patch[8 * r.node[i] + NODE_FORCE_X + (size_t)c] += r.n[i] * load->force[c];
     }
 }
 
 void mpm_loads_work(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
-        if (body->slot[body->loads[k].id] == UINT32_MAX) continue;
-        double force[2];
-        load_force(body, body->loads + k, step->time + 0.5 * step->dt, force);
-        const reach r = reach_of(body, body->loads + k);
+        const mpm_load *load = body->loads + k;
+        if (body->slot[load->id] == UINT32_MAX) continue;
+        const reach r = reach_of(body, load);
         for (int i = 0; i < r.count; ++i) {
             const double *own = body->own + (size_t)mpm_dof_of(r.tile, (int)r.node[i]) * OWN_RECORD;
             for (int c = 0; c < 2; ++c)
-                body->energy.external += step->dt * r.n[i] * force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
+                body->energy.external += step->dt * r.n[i] * load->force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
         }
     }
 }
 
-/* Arms stretch and turn as the domains of their points do; domains of fixed size have fixed arms. */
+/* Arms stretch and turn as the domains of their points do; domains of fixed size have fixed arms, but under a pressure. */
 void mpm_loads_follow(mpm_body *body, const ab_step *step) {
-    if (!body->contiguous) return;
     for (size_t k = 0; k < body->load_count; ++k) {
         mpm_load *load = body->loads + k;
-        if (body->slot[load->id] == UINT32_MAX) continue;
+        if (body->slot[load->id] == UINT32_MAX || !(body->contiguous || body->scene->loads[load->spec].press)) continue;
         const reach r = reach_of(body, load);
         double arm[2] = {load->arm[0], load->arm[1]}, half[2] = {load->half[0], load->half[1]};
         for (int i = 0; i < r.count; ++i) {

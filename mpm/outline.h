@@ -21,6 +21,9 @@ typedef struct mpm_loops {
 ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body, mpm_loops *loops, ab_report *);
 void mpm_loops_clear(mpm_loops *);
 
+/* following[k], of fill->surface_count: the piece of outline that begins where piece k ends. AB_BAD_INPUT: the pieces do not close; AB_FAILED: no memory. */
+ab_status mpm_pieces_chain(const ab_fill *fill, uint32_t *following);
+
 /* Divides faces longer than `longest` and drops vertices that are no corners where a face is shorter than `shortest`. */
 ab_status mpm_loops_even(mpm_loops *, double shortest, double longest, const char *body, ab_report *);
 

@@ -223,25 +223,38 @@ static bool add_loop(mpm_loops *loops, const track *t, double spacing) {
     return lift(loops, first);
 }
 
+ab_status mpm_pieces_chain(const ab_fill *fill, uint32_t *following) {
+    const size_t n = fill->surface_count;
+    bool *taken = malloc(n + 1);
+    end *starts = malloc((n + 1) * sizeof *starts);
+    ab_status status = taken && starts ? AB_OK : AB_FAILED;
+    for (size_t k = 0; k < n && status == AB_OK; ++k) {
+        double to[2];
+        ends_of(fill->surface + k, starts[k].x, to);
+        starts[k].piece = (uint32_t)k;
+    }
+    if (status == AB_OK) {
+        qsort(starts, n, sizeof *starts, by_x);
+        if (n == 0 || !chain(fill, starts, following, taken)) status = AB_BAD_INPUT;
+    }
+    free(taken), free(starts);
+    return status;
+}
+
 ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body, mpm_loops *loops, ab_report *report) {
     const size_t n = fill->surface_count;
     *loops = (mpm_loops){0};
     uint32_t *following = malloc((n + 1) * sizeof *following), *leading = malloc((n + 1) * sizeof *leading);
     bool *done = malloc(n + 1);
-    end *starts = malloc((n + 1) * sizeof *starts);
     track t = {0, malloc((2 * n + 1) * sizeof *t.x), malloc(2 * n + 1), malloc((2 * n + 2) * sizeof *t.point)};
     ab_status status = AB_OK;
-    if (!following || !leading || !done || !starts || !t.x || !t.corner || !t.point) {
+    const bool room = following && leading && done && t.x && t.corner && t.point;
+    const ab_status chained = room ? mpm_pieces_chain(fill, following) : AB_FAILED;
+    if (chained == AB_FAILED) {
         status = ab_report_failure(report, "body '%s': no memory for an outline of %zu pieces", body, n);
         goto out;
     }
-    for (size_t k = 0; k < n; ++k) {
-        double to[2];
-        ends_of(fill->surface + k, starts[k].x, to);
-        starts[k].piece = (uint32_t)k;
-    }
-    qsort(starts, n, sizeof *starts, by_x);
-    if (n == 0 || !chain(fill, starts, following, done)) {
+    if (chained != AB_OK) {
         status =
             ab_report_failure(report,
                               "body '%s': its outline does not close, so that it has no faces to touch; draw it as one polygon, or use "
@@ -261,7 +274,7 @@ ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body
         loops->arm[2 * k + 1] = loops->x[2 * k + 1] - fill->y[loops->point[k]];
     }
 out:
-    free(following), free(leading), free(done), free(starts), free(t.x), free(t.corner), free(t.point);
+    free(following), free(leading), free(done), free(t.x), free(t.corner), free(t.point);
     if (status != AB_OK) mpm_loops_clear(loops);
     return status;
 }

@@ -86,6 +86,31 @@ static void test_a_beam_and_a_punch_are_read_without_a_grid(void **state) {
     assert_float_equal(s->loads[0].at[0], 3.75, 0);
     assert_float_equal(at_time(&s->loads[0].force[1], 2), -4000, 1e-9);
     assert_float_equal(at_time(&s->loads[1].traction[1], 0), -1000, 0);
+    assert_false(s->loads[1].press);
+    forget(&o);
+}
+
+static void test_tractions_and_pressures_know_time_and_place(void **state) {
+    (void)state;
+    outcome o = read_with("traction: [0, -1e3]", "traction: [\"2*t\", \"-x*y*t kPa\"]", NULL, NULL);
+    assert_int_equal(o.status, AB_OK);
+    const ab_load_spec *load = &o.scene->loads[1];
+    assert_float_equal(ab_number_at(&load->traction[1], 2, 3, 4, 0), -24e3, 1e-9);
+    assert_int_equal(ab_number_variables(&load->traction[0]), AB_VARIABLE_T);
+    assert_int_equal(ab_number_variables(&load->traction[1]), AB_VARIABLES_TXY);
+    forget(&o);
+    o = read_with("traction: [0, -1e3]", "pressure: \"min(t,1)*y\"", NULL, NULL);
+    assert_int_equal(o.status, AB_OK);
+    load = &o.scene->loads[1];
+    assert_true(load->press && !load->point);
+    assert_int_equal(load->where.side, AB_TOP);
+    assert_float_equal(ab_number_at(&load->pressure, 0.5, 7, 4, 0), 2, 1e-15);
+    assert_int_equal(ab_number_variables(&load->pressure), AB_VARIABLE_T | AB_VARIABLE_Y);
+    forget(&o);
+    o = read_with("traction: [0, -1e3]", "pressure: 20 kPa", NULL, NULL);
+    assert_int_equal(o.status, AB_OK);
+    assert_float_equal(at_time(&o.scene->loads[1].pressure, 0), 20e3, 0);
+    assert_int_equal(ab_number_variables(&o.scene->loads[1].pressure), AB_NO_VARIABLE);
     forget(&o);
 }
 
@@ -231,13 +256,25 @@ static const mistake mistakes[] = {
     {MOTION, "motion: {mass: 1, inertia: -1}", "bodies.punch.motion.inertia is -1 but must be greater than 0 kg m2"},
     {MOTION, "motion: [0, 0]", "bodies.punch.motion must be a mapping"},
     {MOTION, "motion: {mass: 1, centre: [0, 0]}", "unknown key 'centre' in bodies.punch.motion; did you mean 'center'?"},
-    {"at: [3.75, 0.25], force", "at: [3.75, 0.25], traction", "loads[0] needs where and traction, or at and force, not of both"},
+    {"at: [3.75, 0.25], force", "at: [3.75, 0.25], traction",
+     "loads[0] needs where and traction (or pressure), or at and force, not of both"},
+    {"at: [3.75, 0.25], force: [0, \"-2*t kN\"]", "at: [3.75, 0.25], pressure: 1",
+     "loads[0] needs where and traction (or pressure), or at and force, not of both"},
     {", force: [0, \"-2*t kN\"]", "", "key 'force' is missing in loads[0]"},
-    {", traction: [0, -1e3]", "", "key 'traction' is missing in loads[1]"},
+    {", traction: [0, -1e3]", "", "key 'traction' or 'pressure' is missing in loads[1]"},
+    {", traction: [0, -1e3]", ", traction: [0, -1e3], pressure: 5",
+     ":20:69: error: loads[1] has a traction and a pressure; write one entry for each"},
+    {", traction: [0, -1e3]", ", pressure: [0, -1e3]", "loads[1].pressure"},
+    {", traction: [0, -1e3]", ", pressure: 2 N", "loads[1].pressure: the unit 'N' does not have the dimension of 'Pa'"},
+    {", traction: [0, -1e3]", ", pressure: \"z*t\"",
+     "loads[1].pressure: 'z' cannot be used in this value; only t, x, y and constants are known here"},
+    {"where: {side: top}, traction: [0, -1e3]", "pressure: 5", "key 'where' is missing in loads[1]"},
     {"where: {side: top}, traction", "traction", "key 'where' is missing in loads[1]"},
-    {"at: [3.75, 0.25], force: [0, \"-2*t kN\"]", "mark: 1", "loads[0] needs where and traction, or at and force"},
+    {"at: [3.75, 0.25], force: [0, \"-2*t kN\"]", "mark: 1", "loads[0] needs where and traction (or pressure), or at and force"},
     {"\"-2*t kN\"", "2 Pa", "loads[0].force: the unit 'Pa' does not have the dimension of 'N'"},
     {"{body: beam, where", "{body: punch, where", ":20:49: error: loads[1]: 'punch' is rigid, so only the sum of a traction would count"},
+    {"{body: beam, where: {side: top}, traction: [0, -1e3]", "{body: punch, where: {side: top}, pressure: 1 kPa",
+     ":20:49: error: loads[1]: 'punch' is rigid, so only the sum of a pressure would count; write that sum: at: [x, y]"},
     {"algorithm: faces", "algorithm: multi-velocity",
      "key 'grid' is missing in the scene: contact of 'punch' and 'beam' by multi-velocity looks at the nodes of the grid; write grid: "
      "{from: [x, y]"},
@@ -384,6 +421,7 @@ static void test_values_of_another_kind_are_answered(void **state) {
                                         "loads[0].force",
                                         "loads[1].where",
                                         "loads[1].traction",
+                                        "loads[1].pressure",
                                         "grid",
                                         "materials",
                                         "contact[0].algorithm"};
@@ -427,6 +465,7 @@ static void test_values_of_another_kind_are_answered(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_beam_and_a_punch_are_read_without_a_grid),
+        cmocka_unit_test(test_tractions_and_pressures_know_time_and_place),
         cmocka_unit_test(test_meshes_in_their_other_forms),
         cmocka_unit_test(test_rigid_bodies_in_their_other_forms),
         cmocka_unit_test(test_each_mistake_is_said_at_its_place_with_its_remedy),
