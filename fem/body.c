@@ -65,7 +65,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
     fem_nodes_force(body);
     fem_loads_add(body, step);
-    return body->trace ? fem_inner_follow(body, report) : AB_OK;
+    return body->trace ? fem_inner_follow(body, step->number, report) : AB_OK;
 }
 
 static ab_status trial(ab_domain *domain, const ab_step *step, ab_report *report) {

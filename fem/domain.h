@@ -136,10 +136,8 @@ typedef struct fem_body {
     fem_outer *outer;
     fem_trace *trace; /* NULL unless a contact needs shared nodes */
     fem_inner inner;
-    uint32_t *inner_element; /* of each inner point */
-    double *inner_place;     /* (xi, eta) of each */
-    double *inner_half;      /* half size of its square in the reference element */
-    struct piece *pieces;    /* of memory */
+    struct fem_inside *inside; /* inside.c: the elements that have inner points */
+    struct piece *pieces;      /* of memory */
     size_t bytes;
 } fem_body;
 
@@ -214,6 +212,6 @@ ab_status fem_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_re
 /* inside.c: the points inside the elements that the grid sees */
 ab_status fem_inner_create(fem_body *, ab_report *);
 void fem_inner_destroy(fem_body *);
-ab_status fem_inner_follow(fem_body *, ab_report *);
+ab_status fem_inner_follow(fem_body *, long step, ab_report *); /* at the start of a step */
 
 #endif

@@ -1,26 +1,48 @@
 /* inside.c: points inside the elements, through which the grid sees a body: the reference square of each element is cut into so many equal pieces that their middles
- * are nowhere further apart than half a cell at the start. A point carries the mass of its piece and moves with the nodes of its element. */
+ * are nowhere further apart than half a cell at the start. A point carries the mass of its piece and moves with the nodes of its element.
+ *
+ * Only a layer of elements along the outer faces has points (inside_layer.c); in the first step all have, so that bodies drawn one inside the other are seen. */
 #include <math.h>
 #include <string.h>
 
-#include "fem/domain.h"
+#include "core/memory.h"
+#include "fem/inside.h"
 
-/* Pieces of an element along xi and eta: by the longer of its two sides in that direction. */
+/* Elements that are cut alike share the values of their basis. Rows go over an element's points, four at a time; the last four are filled up with zeros. */
+typedef struct cutting {
+    size_t pieces[2], count, ld;
+    double *value;    /* nodes rows */
+    double *along[2]; /* nodes rows each: derivatives times the half size of a piece */
+} cutting;
+
+struct fem_inside {
+    size_t bytes; /* of the block of memory that this is the head of */
+    size_t elements, cuttings;
+    uint32_t *element;
+    uint32_t *first; /* elements + 1: its points */
+    uint32_t *cut;   /* of each element */
+    cutting *cutting;
+    bool some;    /* not all elements have points */
+    bool settled; /* the layer has been chosen, or all elements keep their points */
+    double depth; /* cells */
+};
+
+enum { FULL = 70 }; /* per cent of the elements; from there on a layer saves nothing */
+static const double DEPTH = 3.0;
+
+/* Pieces of an element along xi and eta: by the longer of its two sides in that direction, as drawn. */
 static void pieces_of(const fem_body *body, size_t element, size_t pieces[2]) {
-    static const int SIDE[2][2][2] = {{{0, 1}, {3, 2}}, {{1, 2}, {0, 3}}};
+    static const int SIDE[2][2][2] = {{{0, 1}, {3, 2}}, {{1, 2}, {0, 3}}}, MIDDLE[2][2] = {{4, 6}, {5, 7}};
     const uint32_t *node = body->mesh->connectivity + element * (size_t)body->element->nodes;
+    const double *x = body->mesh->x;
     for (int c = 0; c < 2; ++c) {
         double longest = 0.0;
         for (int s = 0; s < 2; ++s) {
-            const uint32_t from = node[SIDE[c][s][0]], to = node[SIDE[c][s][1]];
-            double length =
-                hypot(body->x[2 * (size_t)to] - body->x[2 * (size_t)from], body->x[2 * (size_t)to + 1] - body->x[2 * (size_t)from + 1]);
+            const double *from = x + 2 * (size_t)node[SIDE[c][s][0]], *to = x + 2 * (size_t)node[SIDE[c][s][1]];
+            double length = hypot(to[0] - from[0], to[1] - from[1]);
             if (body->element->nodes == 8) { /* by way of its middle */
-                static const int MIDDLE[2][2] = {{4, 6}, {5, 7}};
-                const uint32_t m = node[MIDDLE[c][s]];
-                length =
-                    hypot(body->x[2 * (size_t)m] - body->x[2 * (size_t)from], body->x[2 * (size_t)m + 1] - body->x[2 * (size_t)from + 1]) +
-                    hypot(body->x[2 * (size_t)to] - body->x[2 * (size_t)m], body->x[2 * (size_t)to + 1] - body->x[2 * (size_t)m + 1]);
+                const double *m = x + 2 * (size_t)node[MIDDLE[c][s]];
+                length = hypot(m[0] - from[0], m[1] - from[1]) + hypot(to[0] - m[0], to[1] - m[1]);
             }
             longest = fmax(longest, length);
         }
@@ -28,107 +50,241 @@ static void pieces_of(const fem_body *body, size_t element, size_t pieces[2]) {
     }
 }
 
-/* Place, half edges and det J of a point's piece as it is now. */
-static double place_point(const fem_body *body, size_t element, const double xi[2], double place[2], double edge[2][2]) {
-    const int nodes = body->element->nodes;
-    const uint32_t *node = body->mesh->connectivity + element * (size_t)nodes;
-    double n[FEM_NODES], dn[FEM_NODES][2];
-    fem_shape(nodes, xi[0], xi[1], n);
-    fem_shape_derivatives(nodes, xi[0], xi[1], dn);
-    memset(place, 0, 2 * sizeof *place);
-    memset(edge, 0, 4 * sizeof(double));
-    for (int a = 0; a < nodes; ++a)
-        for (size_t c = 0; c < 2; ++c) {
-            const double x = body->x[2 * (size_t)node[a] + c];
-            place[c] += n[a] * x;
-            edge[0][c] += dn[a][0] * x;
-            edge[1][c] += dn[a][1] * x;
-        }
-    return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-}
+/* ---- where points are ------------------------------------------------------------------------------------------------------- */
 
-static void follow(fem_body *body) {
-    fem_inner *in = &body->inner;
-#pragma omp parallel for schedule(static) num_threads(body->threads)
-    for (size_t q = 0; q < in->count; ++q) {
-        double place[2], edge[2][2];
-        const double *half = body->inner_half + 2 * q;
-        const double det = place_point(body, body->inner_element[q], body->inner_place + 2 * q, place, edge);
-        for (int c = 0; c < 2; ++c)
-            for (int d = 0; d < 2; ++d) edge[d][c] *= half[d];
-        in->position[q] = place[0];
-        in->position[in->ld + q] = place[1];
-        in->volume[q] = 4.0 * half[0] * half[1] * det;
-        in->extent[q] = edge[0][0] * edge[0][0] + edge[1][0] * edge[1][0];
-        in->extent[in->ld + q] = edge[0][1] * edge[0][1] + edge[1][1] * edge[1][1];
-        in->extent[2 * in->ld + q] = edge[0][0] * edge[0][1] + edge[1][0] * edge[1][1];
+static inline __attribute__((always_inline)) void follow_element(const fem_body *body, size_t k, int nodes) {
+    const struct fem_inside *in = body->inside;
+    const fem_inner *inner = &body->inner;
+    const uint32_t *node = body->mesh->connectivity + (size_t)in->element[k] * (size_t)nodes;
+    const cutting *cut = in->cutting + in->cut[k];
+    double x[2 * FEM_NODES];
+    for (int a = 0; a < nodes; ++a) memcpy(x + 2 * a, body->x + 2 * (size_t)node[a], 2 * sizeof *x);
+    for (size_t j = 0; j < cut->count; j += 4) {
+        v4 place[2] = {{0}}, xi[2] = {{0}}, eta[2] = {{0}};
+        for (int a = 0; a < nodes; ++a) {
+            const size_t at = (size_t)a * cut->ld + j;
+            const v4 n = v4_load(cut->value + at), n0 = v4_load(cut->along[0] + at), n1 = v4_load(cut->along[1] + at);
+            for (int c = 0; c < 2; ++c) {
+                const v4 here = v4_set(x[2 * a + c]);
+                place[c] += n * here;
+                xi[c] += n0 * here;
+                eta[c] += n1 * here;
+            }
+        }
+        const v4 row[6] = {place[0],
+                           place[1],
+                           v4_set(4.0) * (xi[0] * eta[1] - xi[1] * eta[0]),
+                           xi[0] * xi[0] + eta[0] * eta[0],
+                           xi[1] * xi[1] + eta[1] * eta[1],
+                           xi[0] * xi[1] + eta[0] * eta[1]};
+        const size_t q = in->first[k] + j, ld = inner->ld;
+        double *const to[6] = {inner->position + q, inner->position + ld + q, inner->volume + q,
+                               inner->extent + q,   inner->extent + ld + q,   inner->extent + 2 * ld + q};
+        const size_t left = cut->count - j;
+        for (int r = 0; r < 6; ++r) {
+            if (left >= 4)
+                v4_store(to[r], row[r]);
+            else
+                for (size_t l = 0; l < left; ++l) to[r][l] = row[r][l];
+        }
     }
 }
 
-/* Points of one element; its mass is spread by their volumes, so that the grid sees all of it. */
-static void fill(fem_body *body, size_t element, const size_t pieces[2], size_t first) {
-    fem_inner *in = &body->inner;
-    const int nodes = body->element->nodes;
-    const double half[2] = {1.0 / (double)pieces[0], 1.0 / (double)pieces[1]};
-    double volume = 0.0, mass = 0.0;
-    size_t q = first;
-    for (size_t j = 0; j < pieces[1]; ++j)
-        for (size_t i = 0; i < pieces[0]; ++i, ++q) {
-            const double xi[2] = {((double)(2 * i + 1)) * half[0] - 1.0, ((double)(2 * j + 1)) * half[1] - 1.0};
-            double place[2], edge[2][2];
-            body->inner_element[q] = (uint32_t)element;
-            memcpy(body->inner_place + 2 * q, xi, sizeof xi);
-            memcpy(body->inner_half + 2 * q, half, sizeof half);
-            in->mass[q] = place_point(body, element, xi, place, edge);
-            volume += in->mass[q];
-            in->start[q + 1] = (q + 1) * (size_t)nodes;
-            fem_shape(nodes, xi[0], xi[1], in->weight + q * (size_t)nodes);
-            memcpy(in->dof + q * (size_t)nodes, body->mesh->connectivity + element * (size_t)nodes, (size_t)nodes * sizeof *in->dof);
+static void follow(const fem_body *body) {
+    const size_t elements = body->inside->elements;
+#pragma omp parallel for schedule(static) num_threads(body->threads) if (elements > 2000)
+    for (size_t k = 0; k < elements; ++k) {
+        if (body->element->nodes == 4)
+            follow_element(body, k, 4);
+        else
+            follow_element(body, k, 8);
+    }
+}
+
+/* ---- making ----------------------------------------------------------------------------------------------------------------- */
+
+/* Arrays one behind the other, each at a cache line. Without a start they only add up. */
+typedef struct carver {
+    char *start;
+    size_t used;
+} carver;
+
+static void *carve(carver *c, size_t count, size_t size) {
+    char *at = c->start ? c->start + c->used : NULL;
+    c->used += (count * size + 63) / 64 * 64;
+    return at;
+}
+
+static void carve_cutting(carver *c, cutting *cut, size_t nodes) {
+    cut->value = carve(c, nodes * cut->ld, sizeof(double));
+    for (int d = 0; d < 2; ++d) cut->along[d] = carve(c, nodes * cut->ld, sizeof(double));
+}
+
+static void carve_points(carver *c, struct fem_inside *in, fem_inner *inner, size_t nodes) {
+    in->element = carve(c, in->elements, sizeof *in->element);
+    in->first = carve(c, in->elements + 1, sizeof *in->first);
+    in->cut = carve(c, in->elements, sizeof *in->cut);
+    inner->position = carve(c, 2 * inner->ld, sizeof(double));
+    inner->mass = carve(c, inner->ld, sizeof(double));
+    inner->volume = carve(c, inner->ld, sizeof(double));
+    inner->extent = carve(c, 3 * inner->ld, sizeof(double));
+    inner->start = carve(c, inner->count + 1, sizeof *inner->start);
+    inner->dof = carve(c, inner->count * nodes, sizeof *inner->dof);
+    inner->weight = carve(c, inner->count * nodes, sizeof(double));
+    inner->inmost = in->some ? carve(c, inner->count, 1) : NULL;
+}
+
+/* The number of the elements' cutting in the list; one more where it is new. */
+static size_t find_cutting(const cutting *list, size_t count, const size_t pieces[2]) {
+    size_t k = count; /* neighbours are cut alike: from the last one back */
+    while (k > 0 && (list[k - 1].pieces[0] != pieces[0] || list[k - 1].pieces[1] != pieces[1])) --k;
+    return k > 0 ? k - 1 : count;
+}
+
+static void fill_cutting(cutting *cut, int nodes) {
+    const double half[2] = {1.0 / (double)cut->pieces[0], 1.0 / (double)cut->pieces[1]};
+    for (size_t q = 0; q < cut->count; ++q) {
+        const double xi = (double)(2 * (q % cut->pieces[0]) + 1) * half[0] - 1.0,
+                     eta = (double)(2 * (q / cut->pieces[0]) + 1) * half[1] - 1.0;
+        double n[FEM_NODES], dn[FEM_NODES][2];
+        fem_shape(nodes, xi, eta, n);
+        fem_shape_derivatives(nodes, xi, eta, dn);
+        for (int a = 0; a < nodes; ++a) {
+            const size_t at = (size_t)a * cut->ld + q;
+            cut->value[at] = n[a];
+            cut->along[0][at] = dn[a][0] * half[0];
+            cut->along[1][at] = dn[a][1] * half[1];
         }
-    for (int g = 0; g < body->element->gauss; ++g) mass += fem_gauss_rows(body, element / 8, g)[8 * FEM_ROW_MASS + element % 8];
-    for (q = first; q < first + pieces[0] * pieces[1]; ++q) in->mass[q] *= mass / volume;
+    }
+}
+
+/* Points of one element; its mass is spread by their volumes as drawn, so that the grid sees all of it. */
+static void fill_element(fem_body *body, size_t k, bool inmost) {
+    const struct fem_inside *in = body->inside;
+    fem_inner *inner = &body->inner;
+    const size_t nodes = (size_t)body->element->nodes, e = in->element[k], first = in->first[k], last = in->first[k + 1];
+    const cutting *cut = in->cutting + in->cut[k];
+    const uint32_t *node = body->mesh->connectivity + e * nodes;
+    double volume = 0.0, mass = 0.0;
+    for (size_t q = first; q < last; ++q) {
+        double edge[2][2] = {{0.0}};
+        for (size_t a = 0; a < nodes; ++a) {
+            const size_t at = a * cut->ld + q - first;
+            for (size_t d = 0; d < 2; ++d)
+                for (size_t c = 0; c < 2; ++c) edge[d][c] += cut->along[d][at] * body->mesh->x[2 * (size_t)node[a] + c];
+            inner->weight[q * nodes + a] = cut->value[at];
+            inner->dof[q * nodes + a] = node[a];
+        }
+        inner->start[q + 1] = (q + 1) * nodes;
+        inner->mass[q] = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
+        volume += inner->mass[q];
+        if (inner->inmost) inner->inmost[q] = inmost;
+    }
+    for (int g = 0; g < body->element->gauss; ++g) mass += fem_gauss_rows(body, e / 8, g)[8 * FEM_ROW_MASS + e % 8];
+    for (size_t q = first; q < last; ++q) inner->mass[q] *= mass / volume;
+}
+
+/* Points in the elements whose mark is FEM_RIM or FEM_LAYER, with `all` in all of them, in place of those there were. marks NULL: all, and none is inmost. */
+static ab_status make_points(fem_body *body, const uint8_t *marks, bool all, double depth, ab_report *report) {
+    const size_t nodes = (size_t)body->element->nodes;
+    struct fem_inside size = {.some = marks != NULL, .depth = depth, .settled = !all};
+    fem_inner inner = {0};
+    cutting *list = NULL;
+    size_t capacity = 0;
+    bool enough = true;
+    for (size_t e = 0; enough && e < body->elements; ++e) {
+        if (!all && marks && marks[e] == FEM_DEEP) continue;
+        size_t pieces[2];
+        pieces_of(body, e, pieces);
+        ++size.elements;
+        inner.count += pieces[0] * pieces[1];
+        if (find_cutting(list, size.cuttings, pieces) < size.cuttings) continue;
+        enough = ab_memory_grow((void **)&list, &capacity, size.cuttings + 1, sizeof *list);
+        if (!enough) break;
+        const size_t count = pieces[0] * pieces[1];
+        list[size.cuttings++] = (cutting){.pieces = {pieces[0], pieces[1]}, .count = count, .ld = (count + 3) / 4 * 4};
+    }
+    inner.ld = (inner.count + 7) / 8 * 8;
+    enough = enough && inner.count < UINT32_MAX;
+    struct fem_inside *in = NULL;
+    for (int round = 0; enough && round < 2; ++round) { /* how much; then where */
+        carver c = {.start = (char *)in};
+        carve(&c, 1, sizeof *in);
+        struct fem_inside *head = in ? in : &size;
+        head->cutting = carve(&c, size.cuttings, sizeof *list);
+        carve_points(&c, head, &inner, nodes);
+        for (size_t k = 0; k < size.cuttings; ++k) carve_cutting(&c, list + k, nodes);
+        if (in) break;
+        in = ab_memory_take(c.used);
+        enough = in != NULL;
+        if (in) *in = size, in->bytes = c.used;
+    }
+    if (enough) {
+        for (size_t k = 0; k < size.cuttings; ++k) fill_cutting(list + k, (int)nodes);
+        memcpy(in->cutting, list, size.cuttings * sizeof *list);
+        if (body->inside) {
+            body->bytes -= body->inside->bytes;
+            ab_memory_give(body->inside, body->inside->bytes);
+        }
+        body->inside = in;
+        body->inner = inner;
+        body->bytes += in->bytes;
+        size_t k = 0;
+        for (size_t e = 0; e < body->elements; ++e) {
+            if (!all && marks && marks[e] == FEM_DEEP) continue;
+            size_t pieces[2];
+            pieces_of(body, e, pieces);
+            in->element[k] = (uint32_t)e;
+            in->cut[k] = (uint32_t)find_cutting(in->cutting, in->cuttings, pieces);
+            in->first[k + 1] = in->first[k] + (uint32_t)(pieces[0] * pieces[1]);
+            fill_element(body, k++, marks && marks[e] != FEM_LAYER);
+        }
+    }
+    ab_memory_give(list, capacity * sizeof *list);
+    if (enough) return AB_OK;
+    return ab_report_failure(report, "body '%s': no memory for %zu points inside its elements; use larger cells or fewer elements",
+                             body->domain.spec->name, inner.count);
+}
+
+/* Points for a layer so many cells deep, or in all elements where that is most of them. keep: all have points still, those beyond the layer being inmost. */
+static ab_status make_layer(fem_body *body, double depth, bool keep, ab_report *report) {
+    uint8_t *marks = ab_memory_take(body->elements);
+    size_t beyond = 0;
+    if (!marks || !fem_layer_mark(body, depth, marks)) {
+        ab_memory_give(marks, body->elements);
+        return ab_report_failure(report, "body '%s': no memory to find the elements along its outer faces", body->domain.spec->name);
+    }
+    for (size_t e = 0; e < body->elements; ++e) beyond += marks[e] == FEM_DEEP;
+    const bool layer = 100 * beyond > (100 - FULL) * body->elements;
+    const ab_status status = make_points(body, layer ? marks : NULL, keep && layer, depth, report);
+    ab_memory_give(marks, body->elements);
+    return status;
 }
 
 ab_status fem_inner_create(fem_body *body, ab_report *report) {
-    fem_inner *in = &body->inner;
-    size_t count = 0, pieces[2];
-    for (size_t e = 0; e < body->elements; ++e) {
-        pieces_of(body, e, pieces);
-        count += pieces[0] * pieces[1];
-    }
-    const size_t nodes = (size_t)body->element->nodes;
-    in->count = count;
-    in->ld = (count + 7) / 8 * 8;
-    in->position = fem_take(body, 2 * in->ld, sizeof(double));
-    in->mass = fem_take(body, in->ld, sizeof(double));
-    in->volume = fem_take(body, in->ld, sizeof(double));
-    in->extent = fem_take(body, 3 * in->ld, sizeof(double));
-    in->start = fem_take(body, count + 1, sizeof *in->start);
-    in->dof = fem_take(body, count * nodes, sizeof *in->dof);
-    in->weight = fem_take(body, count * nodes, sizeof(double));
-    body->inner_element = fem_take(body, count, sizeof *body->inner_element);
-    body->inner_place = fem_take(body, 2 * count, sizeof(double));
-    body->inner_half = fem_take(body, 2 * count, sizeof(double));
-    if (!in->position || !in->mass || !in->volume || !in->extent || !in->start || !in->dof || !in->weight || !body->inner_element ||
-        !body->inner_place || !body->inner_half)
-        return ab_report_failure(report, "body '%s': no memory for %zu points inside its elements; use larger cells or fewer elements",
-                                 body->domain.spec->name, count);
-    size_t first = 0;
-    for (size_t e = 0; e < body->elements; ++e) {
-        pieces_of(body, e, pieces);
-        fill(body, e, pieces, first);
-        first += pieces[0] * pieces[1];
-    }
+    AB_TRY(make_layer(body, DEPTH, true, report));
     AB_TRY(fem_trace_create(body->scene, body->domain.spec->name, body->elastic.lambda + 2.0 * body->elastic.mu, &body->trace, report));
-    return fem_inner_follow(body, report);
+    return fem_inner_follow(body, 0, report);
 }
 
 void fem_inner_destroy(fem_body *body) {
     if (body->trace) fem_trace_destroy(body->trace);
+    if (body->inside) ab_memory_give(body->inside, body->inside->bytes);
     body->trace = NULL;
+    body->inside = NULL;
 }
 
-ab_status fem_inner_follow(fem_body *body, ab_report *report) {
+/* After the first step the points beyond the layer go, unless a node in contact has seen one: then the bodies lie in each other, and all stay. A layer whose inmost
+ * elements have come near a node in contact (deep dents, elements that are squeezed) is made anew where the body is now, twice as deep. */
+static ab_status fit_layer(fem_body *body, ab_report *report) {
+    const struct fem_inside *in = body->inside;
+    const bool near = fem_trace_saw_inmost(body->trace);
+    if (!in->settled) return near ? make_points(body, NULL, false, in->depth, report) : make_layer(body, in->depth, false, report);
+    return near ? make_layer(body, 2.0 * in->depth, false, report) : AB_OK;
+}
+
+ab_status fem_inner_follow(fem_body *body, long step, ab_report *report) {
+    if (step > 0 && body->inside->some) AB_TRY(fit_layer(body, report));
     follow(body);
     return fem_trace_update(body->trace, &body->inner, report);
 }

@@ -24,6 +24,7 @@ typedef struct tile {
 struct fem_trace {
     const char *body;
     double h, inverse_h, modulus;
+    bool saw_inmost;
     /* tiles, ascending */
     size_t tile_count, tile_capacity, key_capacity;
     uint64_t *key, *wanted; /* wanted: for a new list */
@@ -253,6 +254,7 @@ static void assemble(fem_trace *t, size_t k) {
 
 ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *report) {
     const size_t count = inner->count;
+    t->saw_inmost = false;
     bool moved = t->version == 0 || count != t->point_count;
     if (moved) {
         if (count > t->point_capacity || !t->cell) {
@@ -285,6 +287,8 @@ no_memory:
 void fem_trace_tiles(const fem_trace *t, ab_node_tiles *tiles) {
     *tiles = (ab_node_tiles){.count = t->tile_count, .key = t->key, .mass = t->mass, .stride = 1, .version = t->version};
 }
+
+bool fem_trace_saw_inmost(const fem_trace *t) { return t->saw_inmost; }
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 
@@ -372,6 +376,7 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
             area[1] += v * gy;
             if (!(value > 0.0)) continue;
             mass += value * m;
+            if (inner->inmost && inner->inmost[q]) t->saw_inmost = true;
             for (size_t e = inner->start[q]; e < inner->start[q + 1]; ++e)
                 if (!add_weight(t, begin, stencil, inner->dof[e], value * m * inner->weight[e])) return false;
             if (!(needs & AB_NEED_NEAR_POINTS)) continue;

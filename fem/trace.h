@@ -17,6 +17,7 @@ typedef struct
     size_t *start;  /* count + 1 */
     uint32_t *dof;
     double *weight;
+    uint8_t *inmost; /* 1: beyond this point there may be parts of the body without points. NULL: nowhere */
 } fem_inner;
 
 ab_status fem_trace_create(const ab_scene *, const char *body, double modulus, fem_trace **, ab_report *);
@@ -26,5 +27,7 @@ void fem_trace_destroy(fem_trace *);
 ab_status fem_trace_update(fem_trace *, const fem_inner *, ab_report *);
 void fem_trace_tiles(const fem_trace *, ab_node_tiles *);
 ab_status fem_trace_nodes(fem_trace *, const fem_inner *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
+/* True where a node that was asked for since the last update has got mass from an inmost point. */
+bool fem_trace_saw_inmost(const fem_trace *);
 
 #endif
