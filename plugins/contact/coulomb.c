@@ -1,5 +1,6 @@
 /* coulomb.c: answers contact points with Coulomb friction: no approach beyond the gap, no slip below the limit
- * friction * normal impulse + adhesion * area * dt, never more than shear_cap * area * dt.
+ * friction * normal impulse + adhesion * area * dt, never more than shear_cap * area * dt. Bodies that overlap are left so, unless `recovery` says in how
+ * many steps they have to part.
  *
  * With kinetic_friction the limit of a point depends on whether it slipped in the last step, not on what the rounds of this step have tried so far: in each round the
  * law is then that of one coefficient, and the rounds end as they do with one. A point that sticks gives way at the static limit, carries that for the rest of the
@@ -11,7 +12,7 @@
 
 typedef struct coulomb {
     const ab_host *host;
-    double friction, kinetic, adhesion, shear_cap, tensile_strength;
+    double friction, kinetic, adhesion, shear_cap, tensile_strength, recovery;
     int weakens; /* kinetic < friction */
 } coulomb;
 
@@ -24,6 +25,8 @@ static const ab_param PARAMS[] = {
      "coefficient of friction of a point that slips, at most friction, which then is that of a point that sticks; without it: the same as "
      "friction",
      NULL, AB_REAL, 0, INFINITY, 0.0, INFINITY},
+    {"recovery", "1", "steps in which bodies that overlap are pushed apart again (what that takes is booked as contact loss < 0); 0: never",
+     NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
 };
 
 static const ab_state STATES[] = {
@@ -37,7 +40,14 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
     coulomb *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
     const double kinetic = fmin(settings[4].real, settings[0].real);
-    *law = (coulomb){host, settings[0].real, kinetic, settings[1].real, settings[2].real, settings[3].real, kinetic < settings[0].real};
+    *law = (coulomb){host,
+                     settings[0].real,
+                     kinetic,
+                     settings[1].real,
+                     settings[2].real,
+                     settings[3].real,
+                     settings[5].real,
+                     kinetic < settings[0].real};
     *self = law;
     return 0;
 }
@@ -63,7 +73,8 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         const double gap = p->gap[i], area_dt = p->area[i] * p->dt;
         const int touching = gap <= TOUCH * p->cell;
         const double tension = touching ? law->tensile_strength * area_dt : 0.0;
-        const double lambda = fmax(-tension, normal_impulse + p->normal_mass[i] * (approach - fmax(gap, 0.0) / p->dt));
+        const double leave = gap >= 0.0 ? gap / p->dt : law->recovery > 0.0 ? gap / (fmax(law->recovery, 1.0) * p->dt) : 0.0;
+        const double lambda = fmax(-tension, normal_impulse + p->normal_mass[i] * (approach - leave));
         const double friction = law->weakens && p->state0[i] > 0.5 ? law->kinetic : law->friction;
         double limit = friction * fmax(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
         if (law->shear_cap > 0.0) limit = fmin(limit, law->shear_cap * area_dt);
