@@ -1,6 +1,7 @@
 /* find.c: asks the bodies of a pair for what its finder needs, nodes they share or surfaces, and the finder for contact points. */
 #include <math.h>
 #include <omp.h>
+#include <string.h>
 
 #include "contact/contact.h"
 
@@ -11,6 +12,19 @@ static const uint32_t NODE_NEEDS = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT 
 ab_status contact_complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
     return ab_report_failure(report, "contact of '%s' and '%s': %s returned %d and gave %s%s", pair->a->spec->name, pair->b->spec->name,
                              what, code, service->message[0] ? "the reason: " : "no reason", service->message);
+}
+
+/* True where the finder was told to leave the gap at 0: its setting `gap`, a word, is `none`. */
+static bool leaves_out_gap(const ab_contact_spec *spec) {
+    const ab_class *class_ = &spec->finder->class_;
+    for (uint32_t k = 0; k < class_->nparam; ++k) {
+        if (strcmp(class_->param[k].name, "gap") || class_->param[k].type != AB_CHOICE || spec->finder_settings[k].integer < 0) continue;
+        const char *word = class_->param[k].choices;
+        for (int64_t skip = spec->finder_settings[k].integer; skip > 0 && word; --skip)
+            word = strchr(word, '|') ? strchr(word, '|') + 1 : NULL;
+        return word && !strncmp(word, "none", 4) && (word[4] == '\0' || word[4] == '|');
+    }
+    return false;
 }
 
 ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
@@ -31,6 +45,11 @@ ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
             "contact by '%s' needs a body with faces (finite-elements, rigid), and neither '%s' (%s) nor '%s' (%s) has any; "
             "use another algorithm, such as multi-velocity",
             finder->class_.name, pair->a->spec->name, a->method, pair->b->spec->name, b->method);
+    if ((pair->spec->responder->class_.needs & AB_NEED_GAP) && leaves_out_gap(pair->spec))
+        return ab_report_error(
+            report, pair->spec->mark,
+            "response '%s' pushes by how far '%s' and '%s' overlap, which '%s' does not measure with gap: none; leave gap out",
+            pair->spec->responder->class_.name, pair->a->spec->name, pair->b->spec->name, finder->class_.name);
     return AB_OK;
 }
 

@@ -122,7 +122,8 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     AB_NEED_AREA_VECTOR = 64u,
     AB_NEED_NEAR_POINTS = 128u,
     AB_NEED_SURFACE = 256u, /* trace->surface: points of one body and the faces of the other near them (since 1.1) */
-    AB_NEED_DISTANCE = 512u /* responses: points->distance (since 1.1) */
+    AB_NEED_DISTANCE = 512u, /* responses: points->distance (since 1.1) */
+    AB_NEED_GAP = 1024u      /* responses: a points->gap that is known: not that of a finder with the setting gap: none (since 1.1) */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,

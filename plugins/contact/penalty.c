@@ -176,6 +176,7 @@ static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
     .kind = AB_CONTACT,
     .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .needs = AB_NEED_GAP,
     .gives = AB_GIVE_IMPULSE,
     .nparam = sizeof PARAMS / sizeof *PARAMS,
     .nstate = sizeof STATES / sizeof *STATES,
