@@ -17,7 +17,10 @@ static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradien
                              {AB_NEED_SHARED_NODES, "shared nodes"},
                              {AB_NEED_MASS_GRADIENT, "mass gradient"},
                              {AB_NEED_AREA_VECTOR, "area vector"},
-                             {AB_NEED_NEAR_POINTS, "points near the node"}};
+                             {AB_NEED_NEAR_POINTS, "points near the node"},
+                             {AB_NEED_SURFACE, "points and faces of surfaces"},
+                             {AB_NEED_DISTANCE, "distance from the stiffer body"},
+                             {AB_NEED_GAP, "gap"}};
 static const word gives[] = {{AB_GIVE_STRESS, "stress"},
                              {AB_GIVE_DISSIPATION, "dissipation"},
                              {AB_GIVE_WAVE_SPEED, "wave speed"},
