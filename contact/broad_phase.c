@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/vector.h"
+
 static const double FINEST = 1e-6; /* of the length of all faces: no finer cells */
 static const double INWARD = 0.5;  /* of a typical face: how deep inside, beyond half its size, a point still finds its face */
 /* Cells that a body may leap in a step and still be seen in time: regions cost its square times the faces. */
@@ -55,17 +57,18 @@ static bool measure(contact_broad *broad, const ab_surface surface[2]) {
         if (count) mean[side] = sum / (double)count;
         all += sum;
     }
-    const double finer = fmax(fmin(mean[0], mean[1]), FINEST * all);
+    const double finer = ab_larger(ab_smaller(mean[0], mean[1]), FINEST * all);
     if (!(finer < INFINITY)) return false;
     broad->cell = broad->grid_cell > 0.0 ? broad->grid_cell : finer;
-    for (int side = 0; side < 2; ++side) broad->needed[side] = broad->length[side] = fmax(fmin(broad->cell, mean[side]), FINEST * all);
+    for (int side = 0; side < 2; ++side)
+        broad->needed[side] = broad->length[side] = ab_larger(ab_smaller(broad->cell, mean[side]), FINEST * all);
     return true;
 }
 
 static void widen(contact_box *box, const double x[2]) {
     for (int d = 0; d < 2; ++d) {
-        box->low[d] = fmin(box->low[d], x[d]);
-        box->high[d] = fmax(box->high[d], x[d]);
+        box->low[d] = ab_smaller(box->low[d], x[d]);
+        box->high[d] = ab_larger(box->high[d], x[d]);
     }
 }
 
@@ -116,7 +119,7 @@ static contact_box velocities(const ab_domain *body, const ab_surface *s) {
 static double largest_difference(const contact_box *a, const contact_box *b) {
     double square = 0.0;
     for (int c = 0; c < 2; ++c) {
-        const double most = fmax(a->high[c] - b->low[c], b->high[c] - a->low[c]);
+        const double most = ab_larger(a->high[c] - b->low[c], b->high[c] - a->low[c]);
         if (most > 0.0) square += most * most;
     }
     return sqrt(square);
@@ -124,7 +127,7 @@ static double largest_difference(const contact_box *a, const contact_box *b) {
 
 static double largest_half(const ab_surface *s) {
     double most = 0.0;
-    for (size_t i = 0; i < s->point_count; ++i) most = fmax(most, s->point_extent[i] + s->point_extent[s->point_ld + i]);
+    for (size_t i = 0; i < s->point_count; ++i) most = ab_larger(most, s->point_extent[i] + s->point_extent[s->point_ld + i]);
     return sqrt(most);
 }
 
@@ -152,8 +155,8 @@ static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surfac
         broad->speed = any ? largest_difference(&velocity_a, &velocity_b) : 0.0;
         bool enough = true;
         for (int side = 0; side < 2; ++side) {
-            const double most = fmax(LEAST_LEAP, fmin(MOST_LEAP, sqrt(LEAP_COST / (1.0 + (double)surface[side].face_count))));
-            distance[side] = fmin(2.0 * dt * broad->speed, most * broad->cell) + INWARD * broad->length[side];
+            const double most = ab_larger(LEAST_LEAP, ab_smaller(MOST_LEAP, sqrt(LEAP_COST / (1.0 + (double)surface[side].face_count))));
+            distance[side] = ab_smaller(2.0 * dt * broad->speed, most * broad->cell) + INWARD * broad->length[side];
             needed[side] = distance[side] + largest_half(surface + 1 - side);
             enough = enough && (!surface[1 - side].point_count || needed[side] <= broad->reach[side].reach);
         }

@@ -28,6 +28,9 @@ typedef struct contact_points {
     uint64_t *old_key; /* of the last step, ascending, with their states: history */
     double *old_state;
     size_t old_count, old_capacity;
+    uint32_t *seen; /* by dof: the last look for shared dofs that met it */
+    size_t seen_capacity;
+    uint32_t look; /* number of the last one */
 } contact_points;
 
 typedef struct contact_broad contact_broad; /* broad_phase.c */

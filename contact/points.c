@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
+#include "core/vector.h"
 
 static bool resize(void *pointer, size_t old_rows, size_t rows, size_t old_ld, size_t ld, size_t size) {
     char **p = pointer;
@@ -61,6 +62,7 @@ void contact_points_destroy(contact_points *points) {
         free(points->relative_old);
     free(points->applied), free(points->change), free(points->direction), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
+    free(points->seen);
 }
 
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
@@ -76,25 +78,28 @@ static void fit_normal_to_sides(ab_points *v, size_t i, const contact_side side[
     *held = normal ? 0.0 : copysign(1.0, *held);
 }
 
-static int compare_dofs(const void *a, const void *b) {
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* True when some dof serves more than one point of this pair. Stencils that are one node each, in ascending order, never do. */
-static int shares_dofs(const size_t *start, const uint32_t *dof, size_t count) {
+/* True when some dof serves more than one point of this pair. Stencils that are one node each, in ascending order, never do. -1: no memory. */
+static int shares_dofs(contact_points *points, const size_t *start, const uint32_t *dof, size_t count) {
     bool ascending = start[count] == count;
     for (size_t k = 1; ascending && k < count; ++k) ascending = dof[k] > dof[k - 1];
     if (ascending) return 0;
-    const size_t uses = start[count];
-    uint32_t *sorted = malloc((uses + 1) * sizeof *sorted);
-    if (!sorted) return -1;
-    memcpy(sorted, dof, uses * sizeof *sorted);
-    qsort(sorted, uses, sizeof *sorted, compare_dofs);
-    int shared = 0;
-    for (size_t k = 1; k < uses && !shared; ++k) shared = sorted[k] == sorted[k - 1];
-    free(sorted);
-    return shared;
+    if (++points->look == 0) { /* after 2^32 looks */
+        memset(points->seen, 0, points->seen_capacity * sizeof *points->seen);
+        points->look = 1;
+    }
+    for (size_t e = 0; e < start[count]; ++e) {
+        if (dof[e] >= points->seen_capacity) {
+            const size_t n = 2 * (size_t)dof[e] + 64;
+            uint32_t *more = realloc(points->seen, n * sizeof *more);
+            if (!more) return -1;
+            memset(more + points->seen_capacity, 0, (n - points->seen_capacity) * sizeof *more);
+            points->seen = more;
+            points->seen_capacity = n;
+        }
+        if (points->seen[dof[e]] == points->look) return 1;
+        points->seen[dof[e]] = points->look;
+    }
+    return 0;
 }
 
 /* Brings the states of points that were there in the last step (same key) into state0; new ones begin at 0. */
@@ -155,7 +160,7 @@ static double share_of_mass(const contact_side side[2], size_t i, const double n
     const double coupling = contact_coupling(side, i, n, turns);
     if (coupling == 0.0 || !(in > 0.0) || !(it > 0.0)) return 1.0;
     *held = true;
-    return 1.0 / (1.0 + fmin(1.0, fabs(coupling) / sqrt(in * it)));
+    return 1.0 / (1.0 + ab_smaller(1.0, fabs(coupling) / sqrt(in * it)));
 }
 
 bool contact_points_prepare(contact_points *points, const contact_side side[2]) {
@@ -170,7 +175,8 @@ bool contact_points_prepare(contact_points *points, const contact_side side[2]) 
         mn[i] = in > 0.0 ? share / in : 0.0;
         mt[i] = it > 0.0 ? share / it : 0.0;
     }
-    const int shared_a = shares_dofs(v->a_start, v->a_dof, v->count), shared_b = shares_dofs(v->b_start, v->b_dof, v->count);
+    const int shared_a = shares_dofs(points, v->a_start, v->a_dof, v->count),
+              shared_b = shares_dofs(points, v->b_start, v->b_dof, v->count);
     if (shared_a < 0 || shared_b < 0) return false;
     points->shared = shared_a || shared_b;
     points->held = held;

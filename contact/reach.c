@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact/broad_phase.h"
+#include "core/vector.h"
 
 static const double MARGIN = 0.25;   /* of a typical face: how far a vertex may move before regions are made anew */
 static const double HEADROOM = 1.25; /* reach made over reach needed, so that it serves while points swell and speed up */
@@ -72,8 +73,8 @@ static bool clip(chord *c, const double low[2], const double high[2]) {
             enter = leave;
             leave = swap;
         }
-        first = fmax(first, enter);
-        last = fmin(last, leave);
+        first = ab_larger(first, enter);
+        last = ab_smaller(last, leave);
     }
     if (!(first <= last) || !isfinite(c->from[0] + c->from[1] + c->to[0] + c->to[1])) return false;
     const chord whole = *c;
@@ -93,13 +94,13 @@ static bool rows_of_column(const chord *c, int axis, double cell, double wide, l
     const double along = c->to[axis] - c->from[axis];
     if (along != 0.0) {
         const double a = (low - c->from[axis]) / along, b = (high - c->from[axis]) / along;
-        t0 = fmax(0.0, fmin(a, b));
-        t1 = fmin(1.0, fmax(a, b));
+        t0 = ab_larger(0.0, ab_smaller(a, b));
+        t1 = ab_smaller(1.0, ab_larger(a, b));
         if (!(t0 <= t1)) return false;
     }
     const double y0 = c->from[other] + t0 * (c->to[other] - c->from[other]), y1 = c->from[other] + t1 * (c->to[other] - c->from[other]);
-    *first = (long)floor((fmin(y0, y1) - wide) / cell);
-    *last = (long)floor((fmax(y0, y1) + wide) / cell);
+    *first = (long)floor((ab_smaller(y0, y1) - wide) / cell);
+    *last = (long)floor((ab_larger(y0, y1) + wide) / cell);
     return true;
 }
 
@@ -118,15 +119,15 @@ static bool follow(contact_reach *r, chord c, double cell, double wide, uint32_t
                  high[2] = {r->window.high[0] + wide, r->window.high[1] + wide};
     if (!clip(&c, low, high)) return true;
     for (int d = 0; d < 2; ++d)
-        if (fmax(fabs(c.from[d]), fabs(c.to[d])) + wide > FURTHEST * cell) return true;
+        if (ab_larger(fabs(c.from[d]), fabs(c.to[d])) + wide > FURTHEST * cell) return true;
     const int axis = fabs(c.to[0] - c.from[0]) >= fabs(c.to[1] - c.from[1]) ? 0 : 1;
     long bound[2][2]; /* no point is beyond the window */
     for (int d = 0; d < 2; ++d) {
-        bound[d][0] = (long)floor(fmax(r->window.low[d] / cell, -FURTHEST));
-        bound[d][1] = (long)floor(fmin(r->window.high[d] / cell, FURTHEST));
+        bound[d][0] = (long)floor(ab_larger(r->window.low[d] / cell, -FURTHEST));
+        bound[d][1] = (long)floor(ab_smaller(r->window.high[d] / cell, FURTHEST));
     }
-    long begin = (long)floor((fmin(c.from[axis], c.to[axis]) - wide) / cell),
-         end = (long)floor((fmax(c.from[axis], c.to[axis]) + wide) / cell);
+    long begin = (long)floor((ab_smaller(c.from[axis], c.to[axis]) - wide) / cell),
+         end = (long)floor((ab_larger(c.from[axis], c.to[axis]) + wide) / cell);
     if (begin < bound[axis][0]) begin = bound[axis][0];
     if (end > bound[axis][1]) end = bound[axis][1];
     for (long i = begin; i <= end; ++i) {
@@ -229,14 +230,14 @@ bool contact_reach_update(contact_reach *r, const ab_surface *s, double cell, do
     r->face_count = s->face_count;
     r->margin = MARGIN * length;
     r->reach = wanted;
-    r->bucket = fmax(r->reach + r->margin, length);
+    r->bucket = ab_larger(r->reach + r->margin, length);
     r->window = *other;
     for (int d = 0; d < 2; ++d) {
         r->window.low[d] -= cell;
         r->window.high[d] += cell;
     }
     ++r->builds;
-    return make_region(r, s, cell, fmax(cell, r->reach) + r->margin) && make_buckets(r, s);
+    return make_region(r, s, cell, ab_larger(cell, r->reach) + r->margin) && make_buckets(r, s);
 }
 
 /* ---- near faces -------------------------------------------------------------------------------------------------------------- */
@@ -244,7 +245,7 @@ bool contact_reach_update(contact_reach *r, const ab_surface *s, double cell, do
 static double distance2(const chord *c, const double x[2]) {
     const double along[2] = {c->to[0] - c->from[0], c->to[1] - c->from[1]}, from[2] = {x[0] - c->from[0], x[1] - c->from[1]};
     const double square = along[0] * along[0] + along[1] * along[1];
-    const double t = square > 0.0 ? fmin(1.0, fmax(0.0, (from[0] * along[0] + from[1] * along[1]) / square)) : 0.0;
+    const double t = square > 0.0 ? ab_smaller(1.0, ab_larger(0.0, (from[0] * along[0] + from[1] * along[1]) / square)) : 0.0;
     const double dx = from[0] - t * along[0], dy = from[1] - t * along[1];
     return dx * dx + dy * dy;
 }
@@ -278,7 +279,7 @@ bool contact_reach_list(contact_reach *r, const ab_surface *faces, ab_surface *p
         if (at != SIZE_MAX) {
             const size_t begin = r->bucket_start[at], end = r->bucket_start[at + 1];
             if (!room(&r->near_face, &r->near_capacity, count + end - begin, sizeof *r->near_face)) return false;
-            const double half = sqrt(fmax(0.0, points->point_extent[i] + points->point_extent[ld + i])), far = half + distance;
+            const double half = sqrt(ab_larger(0.0, points->point_extent[i] + points->point_extent[ld + i])), far = half + distance;
             for (size_t k = begin; k < end; ++k) {
                 const chord c = chord_of(faces, r->bucket_face[k]);
                 if (distance2(&c, x) <= (far + c.bulge) * (far + c.bulge)) r->near_face[count++] = r->bucket_face[k];

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
+#include "core/vector.h"
 
 enum { MOST_ROUNDS = 400, PATIENCE = 12, PLAIN = 8 }; /* the first rounds are often enough */
 static const double STANDSTILL = 1e-13;               /* change of an impulse against the largest one of the step */
@@ -51,10 +52,10 @@ static void apply(contact_pair *pair, const contact_side side[2], size_t i, prog
         pair->points.applied[k] = p->impulse[k];
         pair->points.change[k] = j[c];
     }
-    so_far->largest = fmax(so_far->largest, size_of(p->impulse[i], p->impulse[p->ld + i]));
+    so_far->largest = ab_larger(so_far->largest, size_of(p->impulse[i], p->impulse[p->ld + i]));
     if (j[0] == 0.0 && j[1] == 0.0) return;
     const double square = j[0] * j[0] + j[1] * j[1];
-    so_far->change = fmax(so_far->change, sqrt(square));
+    so_far->change = ab_larger(so_far->change, sqrt(square));
     so_far->square += square;
     contact_push(side, i, j);
 }

@@ -42,10 +42,15 @@ void contact_push(const contact_side side[2], size_t i, const double j[2]) {
         const contact_side *s = side + k;
         for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
             const size_t dof = s->dof[e];
-            for (size_t c = 0; c < 2; ++c)
-                s->dofs.velocity[dof * s->dofs.velocity_stride + c] -=
-                    s->sign * s->weight[e] * j[c] * s->dofs.inverse_mass[dof * s->dofs.mass_stride + c];
-            for (size_t c = 0; s->dofs.impulse && c < 2; ++c) s->dofs.impulse[2 * dof + c] -= s->sign * s->weight[e] * j[c];
+            const double share = s->sign * s->weight[e], jx = share * j[0], jy = share * j[1];
+            const double *inverse_mass = s->dofs.inverse_mass + dof * s->dofs.mass_stride;
+            double *velocity = s->dofs.velocity + dof * s->dofs.velocity_stride;
+            const double vx = velocity[0] - jx * inverse_mass[0], vy = velocity[1] - jy * inverse_mass[1];
+            velocity[0] = vx;
+            velocity[1] = vy;
+            if (!s->dofs.impulse) continue;
+            s->dofs.impulse[2 * dof] -= jx;
+            s->dofs.impulse[2 * dof + 1] -= jy;
         }
         if (s->dofs.spin) {
             double r[2];

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/vector.h"
+
 enum {
     PATCH = AB_TILE + 1,
     PATCH_NODES = PATCH * PATCH,
@@ -208,7 +210,7 @@ static void sort_points(fem_trace *t) {
 
 /* Values of the hat functions of the two nodes of a cell in one direction, at s cells from the grid's corner; i: the first node. */
 static inline void hats(double s, int32_t i, double n[2]) {
-    n[1] = fmin(fmax(s - i, 0.0), 1.0);
+    n[1] = ab_smaller(ab_larger(s - i, 0.0), 1.0);
     n[0] = 1.0 - n[1];
 }
 
@@ -368,7 +370,8 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
         const double slope[2] = {c % 2 ? -t->inverse_h : t->inverse_h, c / 2 ? -t->inverse_h : t->inverse_h};
         for (uint32_t s = first[c]; s < last[c]; ++s) {
             const uint32_t q = t->order[s];
-            const double nx = fmax(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0), ny = fmax(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
+            const double nx = ab_larger(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0),
+                         ny = ab_larger(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
             const double m = inner->mass[q], v = inner->volume[q], gx = slope[0] * ny, gy = slope[1] * nx, value = nx * ny;
             gradient[0] += m * gx;
             gradient[1] += m * gy;
