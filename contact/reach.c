@@ -44,7 +44,7 @@ typedef struct chord {
     bool bent;
 } chord;
 
-static chord chord_of(const ab_surface *s, size_t face) {
+static inline chord chord_of(const ab_surface *s, size_t face) {
     const uint32_t *v = s->face_vertex + 3 * face;
     chord c = {.bulge = 0.0, .bent = v[2] != UINT32_MAX};
     double offset[2] = {0.0, 0.0};
@@ -54,7 +54,7 @@ static chord chord_of(const ab_surface *s, size_t face) {
         c.to[d] = x[v[1]];
         if (v[2] != UINT32_MAX) offset[d] = x[v[2]] - 0.5 * (c.from[d] + c.to[d]);
     }
-    c.bulge = sqrt(offset[0] * offset[0] + offset[1] * offset[1]);
+    if (c.bent) c.bulge = sqrt(offset[0] * offset[0] + offset[1] * offset[1]);
     return c;
 }
 
@@ -242,7 +242,14 @@ bool contact_reach_update(contact_reach *r, const ab_surface *s, double cell, do
 
 /* ---- near faces -------------------------------------------------------------------------------------------------------------- */
 
-static double distance2(const chord *c, const double x[2]) {
+/* False where a place is further from the box around a chord than `far` in some direction. */
+static inline bool may_reach(const chord *c, const double x[2], double far) {
+    for (int d = 0; d < 2; ++d)
+        if (x[d] < ab_smaller(c->from[d], c->to[d]) - far || x[d] > ab_larger(c->from[d], c->to[d]) + far) return false;
+    return true;
+}
+
+static inline double distance2(const chord *c, const double x[2]) {
     const double along[2] = {c->to[0] - c->from[0], c->to[1] - c->from[1]}, from[2] = {x[0] - c->from[0], x[1] - c->from[1]};
     const double square = along[0] * along[0] + along[1] * along[1];
     const double t = square > 0.0 ? ab_smaller(1.0, ab_larger(0.0, (from[0] * along[0] + from[1] * along[1]) / square)) : 0.0;
@@ -282,7 +289,8 @@ bool contact_reach_list(contact_reach *r, const ab_surface *faces, ab_surface *p
             const double half = sqrt(ab_larger(0.0, points->point_extent[i] + points->point_extent[ld + i])), far = half + distance;
             for (size_t k = begin; k < end; ++k) {
                 const chord c = chord_of(faces, r->bucket_face[k]);
-                if (distance2(&c, x) <= (far + c.bulge) * (far + c.bulge)) r->near_face[count++] = r->bucket_face[k];
+                const double reach = far + c.bulge;
+                if (may_reach(&c, x, reach) && distance2(&c, x) <= reach * reach) r->near_face[count++] = r->bucket_face[k];
             }
             r->visits += end - begin;
         }

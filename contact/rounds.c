@@ -16,10 +16,9 @@ static const double STANDSTILL = 1e-13;               /* change of an impulse ag
 static const double PROGRESS = 0.8;                   /* PATIENCE rounds must bring the change down to this part of what it was */
 
 typedef struct progress {
-    double change, largest, square; /* N s, N s, N2 s2: largest change of an impulse in a round, largest impulse, sum of squared changes */
+    double change2, largest2,
+        square; /* N2 s2: squares of the largest change of an impulse in a round and of the largest impulse, sum of squared changes */
 } progress;
-
-static double size_of(double x, double y) { return sqrt(x * x + y * y); }
 
 /* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
  * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
@@ -52,10 +51,11 @@ static void apply(contact_pair *pair, const contact_side side[2], size_t i, prog
         pair->points.applied[k] = p->impulse[k];
         pair->points.change[k] = j[c];
     }
-    so_far->largest = ab_larger(so_far->largest, size_of(p->impulse[i], p->impulse[p->ld + i]));
+    const double jx = p->impulse[i], jy = p->impulse[p->ld + i];
+    so_far->largest2 = ab_larger(so_far->largest2, jx * jx + jy * jy);
     if (j[0] == 0.0 && j[1] == 0.0) return;
     const double square = j[0] * j[0] + j[1] * j[1];
-    so_far->change = ab_larger(so_far->change, sqrt(square));
+    so_far->change2 = ab_larger(so_far->change2, square);
     so_far->square += square;
     contact_push(side, i, j);
 }
@@ -129,8 +129,9 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
             const double *history = stage == AB_STAGE_KINEMATIC ? rows + (pair->points.states - HISTORY) * p->ld : NULL;
             AB_TRY(round_over(pair, side, history, &so_far, report));
         }
-        if (so_far.change < PROGRESS * least) least = so_far.change, since = 0;
-        if (!again || so_far.change <= STANDSTILL * so_far.largest || ++since > PATIENCE) break;
+        const double change = sqrt(so_far.change2), largest = sqrt(so_far.largest2);
+        if (change < PROGRESS * least) least = change, since = 0;
+        if (!again || change <= STANDSTILL * largest || ++since > PATIENCE) break;
         const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;
         square = so_far.square;
         for (size_t k = 0; k < count && round >= PLAIN && round + 1 < MOST_ROUNDS; ++k) {
