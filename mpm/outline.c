@@ -4,8 +4,8 @@
  * mass): their weight fades with their mass, and the others take it over. What a finder learns of a vertex' velocity is what moves it.
  *
  * Nothing holds such a vertex to its place on the body, and over many turns it would creep along the outline (by 0.15 of a cell a turn, and the corners with it).
- * So each has an arm from the point under it, which stretches and turns as that point's domain does, and is drawn to the arm's end: the faster, the faster
- * the material deforms, so that bodies that move without deforming move their faces exactly. */
+ * So each has arms from the points under it, which stretch and turn as those points' domains do, and is drawn to where they end: the faster, the faster the
+ * material deforms, so that bodies that move without deforming move their faces exactly. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,7 @@ void mpm_outline_destroy(struct mpm_outline *o) {
 }
 
 size_t mpm_outline_bytes(const struct mpm_outline *o) {
-    return o ? sizeof *o + o->loops.capacity * 45 + o->capacity * (16 + 8 + NODES * 12 + 20) : 0;
+    return o ? sizeof *o + o->loops.capacity * 65 + o->capacity * (16 + 8 + NODES * 12 + 20) : 0;
 }
 
 /* Faces are wanted where a finder looks at surfaces and the other body is made of points too; any other body brings faces of its own. */
@@ -147,22 +147,38 @@ static void gradient_at(const mpm_body *body, uint32_t slot, double dt, double g
         }
 }
 
+/* Stretches the arm from a point to a vertex. Adds its end to end[2] and the size of the gradient to *size; false where the point has left through a side of the
+ * grid. */
+static bool follow_point(const mpm_body *body, uint32_t id, double dt, double arm[2], double end[2], double *size) {
+    const uint32_t slot = body->slot[id];
+    if (slot == UINT32_MAX) return false;
+    double g[2][2];
+    gradient_at(body, slot, dt, g);
+    const double old[2] = {arm[0], arm[1]}, *point = mpm_block(body, slot / 8) + slot % 8;
+    double square = 0.0;
+    for (int c = 0; c < 2; ++c) {
+        arm[c] += g[c][0] * old[0] + g[c][1] * old[1];
+        end[c] += point[8 * (ROW_NEXT + c)] + arm[c];
+        square += g[c][0] * g[c][0] + g[c][1] * g[c][1];
+    }
+    *size += sqrt(square);
+    return true;
+}
+
 void mpm_outline_follow(mpm_body *body, const ab_step *step) {
     if (!body->outline) return;
     mpm_loops *loops = &body->outline->loops;
     for (size_t k = 0; k < loops->count; ++k) {
-        const uint32_t slot = body->slot[loops->point[k]];
-        if (slot == UINT32_MAX) continue; /* the point has left through a side of the grid */
-        double g[2][2], size = 0.0;
-        gradient_at(body, slot, step->dt, g);
-        double *arm = loops->arm + 2 * k, *x = loops->x + 2 * k;
-        const double old[2] = {arm[0], arm[1]}, *point = mpm_block(body, slot / 8) + slot % 8;
-        for (int c = 0; c < 2; ++c) {
-            arm[c] += g[c][0] * old[0] + g[c][1] * old[1];
-            size += g[c][0] * g[c][0] + g[c][1] * g[c][1];
-        }
-        const double share = fmin(DRAWN * sqrt(size), 1.0);
-        for (int c = 0; c < 2; ++c) x[c] += share * (point[8 * (ROW_NEXT + c)] + arm[c] - x[c]);
+        const uint32_t *id = loops->point + 2 * k;
+        double *arm = loops->arm + 4 * k, *x = loops->x + 2 * k, end[2] = {0.0, 0.0}, size = 0.0;
+        int found = follow_point(body, id[0], step->dt, arm, end, &size);
+        if (id[1] == id[0])
+            arm[2] = arm[0], arm[3] = arm[1];
+        else
+            found += follow_point(body, id[1], step->dt, arm + 2, end, &size);
+        if (!found) continue;
+        const double share = fmin(DRAWN * size / found, 1.0);
+        for (int c = 0; c < 2; ++c) x[c] += share * (end[c] / found - x[c]);
     }
 }
 

@@ -12,8 +12,8 @@ typedef struct mpm_loops {
     uint32_t *next;  /* vertex after it in its loop */
     uint32_t *prior; /* and before it */
     bool *corner;    /* where the outline was drawn with a corner */
-    uint32_t *point; /* under it: the fill's number, which is its id */
-    double *arm;     /* 2 a vertex, m: from that point to it */
+    uint32_t *point; /* 2 a vertex: under the outline before it and after it (or twice the same); the fill's number, which is its id */
+    double *arm;     /* 2 for each of those, m: from the point to the vertex */
 } mpm_loops;
 
 /* Loops from the pieces of outline that a fill leaves, in vertices about `spacing` apart (corners always; smooth stretches evenly, so that the loops enclose the

@@ -15,7 +15,7 @@ typedef struct track {
     size_t count;
     double (*x)[2];
     bool *corner;
-    uint32_t *point; /* under it */
+    uint32_t (*point)[2]; /* under it, before and after */
 } track;
 
 typedef struct end {
@@ -114,7 +114,8 @@ static void track_loop(const ab_fill *fill, const uint32_t *following, const uin
     do {
         const ab_outline_piece *p = fill->surface + k, *q = fill->surface + following[k];
         for (int c = 0; c < 2; ++c) t->x[t->count][c] = p->position[c];
-        t->point[t->count] = t->point[t->count + 1] = p->point;
+        t->point[t->count][0] = t->point[t->count][1] = t->point[t->count + 1][0] = p->point;
+        t->point[t->count + 1][1] = q->point;
         t->corner[t->count++] = false;
         bool smooth;
         junction(p, q, t->x[t->count], &smooth);
@@ -135,18 +136,19 @@ static bool reserve(mpm_loops *loops, size_t count) {
     const size_t n = count + count / 2 + 16;
     if (!grow(&loops->x, 2 * n, sizeof(double)) || !grow(&loops->next, n, sizeof *loops->next) ||
         !grow(&loops->prior, n, sizeof *loops->prior) || !grow(&loops->corner, n, sizeof *loops->corner) ||
-        !grow(&loops->point, n, sizeof *loops->point) || !grow(&loops->arm, 2 * n, sizeof(double)))
+        !grow(&loops->point, 2 * n, sizeof *loops->point) || !grow(&loops->arm, 4 * n, sizeof(double)))
         return false;
     loops->capacity = n;
     return true;
 }
 
-static bool add_vertex(mpm_loops *loops, const double x[2], bool corner, uint32_t point, const double arm[2]) {
+/* arm: of both points, or NULL where they are set when all vertices are in their places. */
+static bool add_vertex(mpm_loops *loops, const double x[2], bool corner, const uint32_t point[2], const double arm[4]) {
     if (!reserve(loops, loops->count + 1)) return false;
     const size_t k = loops->count++;
-    for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] = x[c], loops->arm[2 * k + c] = arm[c];
+    for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] = x[c], loops->point[2 * k + c] = point[c];
+    for (size_t c = 0; c < 4; ++c) loops->arm[4 * k + c] = arm ? arm[c] : 0.0;
     loops->corner[k] = corner;
-    loops->point[k] = point;
     return true;
 }
 
@@ -159,13 +161,13 @@ static void close_loop(mpm_loops *loops, size_t first) {
 }
 
 /* A stretch of the track, candidates `from` to `to` (counted on round the loop), in parts of equal length: its first vertex and those between. */
-static bool divide(mpm_loops *loops, const track *t, size_t from, size_t to, double spacing, size_t least) {
+static bool divide(mpm_loops *loops, const track *t, size_t from, size_t to, double spacing, size_t least, size_t multiple) {
     double length = 0.0;
     for (size_t k = from; k < to; ++k) {
         const double *a = t->x[k % t->count], *b = t->x[(k + 1) % t->count];
         length += hypot(b[0] - a[0], b[1] - a[1]);
     }
-    const size_t parts = (size_t)fmax((double)least, floor(length / spacing + 0.5 + 1e-9));
+    const size_t parts = multiple * (size_t)fmax((double)least, floor(length / spacing / (double)multiple + 0.5 + 1e-9));
     double done = 0.0;
     size_t at = from;
     for (size_t part = 0; part < parts; ++part) {
@@ -180,9 +182,9 @@ static bool divide(mpm_loops *loops, const track *t, size_t from, size_t to, dou
         }
         const double share = step > 0.0 ? fmin(fmax((wanted - done) / step, 0.0), 1.0) : 0.0;
         const double x[2] = {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
-        const size_t nearest = (share < 0.5 ? at : at + 1) % t->count;
-        static const double none[2] = {0.0, 0.0}; /* set when all vertices are in their places */
-        if (!add_vertex(loops, x, part == 0 && t->corner[from % t->count], t->point[nearest], none)) return false;
+        /* the nearer candidate; of two at one distance the middle of a piece, so that mirrored outlines hang on mirrored points */
+        const size_t nearest = (fabs(share - 0.5) < 1e-9 ? at + at % 2 : share < 0.5 ? at : at + 1) % t->count;
+        if (!add_vertex(loops, x, part == 0 && t->corner[from % t->count], t->point[nearest], NULL)) return false;
     }
     return true;
 }
@@ -213,10 +215,13 @@ static bool add_loop(mpm_loops *loops, const track *t, double spacing) {
     size_t start = 0, corners = 0;
     for (size_t k = t->count; k-- > 0;)
         if (t->corner[k]) start = k, ++corners;
+    for (size_t k = 0; !corners && k < t->count;
+         ++k) /* a circle is divided alike on both sides of either axis, whichever piece comes first */
+        if (t->x[k][0] > t->x[start][0]) start = k;
     for (size_t from = start; from < start + t->count;) {
         size_t to = from + 1;
         while (to < start + t->count && !t->corner[to % t->count]) ++to;
-        if (!divide(loops, t, from, to, spacing, corners == 0 ? 4 : corners == 1 ? 3 : corners == 2 ? 2 : 1)) return false;
+        if (!divide(loops, t, from, to, spacing, corners == 1 ? 3 : corners == 2 ? 2 : 1, corners ? 1 : 4)) return false;
         from = to;
     }
     close_loop(loops, first);
@@ -246,7 +251,7 @@ ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body
     *loops = (mpm_loops){0};
     uint32_t *following = malloc((n + 1) * sizeof *following), *leading = malloc((n + 1) * sizeof *leading);
     bool *done = malloc(n + 1);
-    track t = {0, malloc((2 * n + 1) * sizeof *t.x), malloc(2 * n + 1), malloc((2 * n + 2) * sizeof *t.point)};
+    track t = {0, malloc((2 * n + 1) * sizeof *t.x), malloc(2 * n + 1), malloc((2 * n + 1) * sizeof *t.point)};
     ab_status status = AB_OK;
     const bool room = following && leading && done && t.x && t.corner && t.point;
     const ab_status chained = room ? mpm_pieces_chain(fill, following) : AB_FAILED;
@@ -269,9 +274,9 @@ ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body
         track_loop(fill, following, leading, (uint32_t)k, spacing, &t);
         if (!add_loop(loops, &t, spacing)) status = ab_report_failure(report, "body '%s': no memory for its outline", body);
     }
-    for (size_t k = 0; k < loops->count; ++k) {
-        loops->arm[2 * k] = loops->x[2 * k] - fill->x[loops->point[k]];
-        loops->arm[2 * k + 1] = loops->x[2 * k + 1] - fill->y[loops->point[k]];
+    for (size_t k = 0; k < 2 * loops->count; ++k) { /* points: two a vertex */
+        loops->arm[2 * k] = loops->x[k / 2 * 2] - fill->x[loops->point[k]];
+        loops->arm[2 * k + 1] = loops->x[k / 2 * 2 + 1] - fill->y[loops->point[k]];
     }
 out:
     free(following), free(leading), free(done), free(t.x), free(t.corner), free(t.point);
@@ -311,12 +316,13 @@ ab_status mpm_loops_even(mpm_loops *loops, double shortest, double longest, cons
                 if (!loops->corner[k]) continue;
                 --even.count;
             }
-            const double *arm = loops->arm + 2 * k;
-            if (!add_vertex(&even, x, loops->corner[k], loops->point[k], arm)) goto no_memory;
+            const double *arm = loops->arm + 4 * k, *after = loops->arm + 4 * loops->next[k];
+            if (!add_vertex(&even, x, loops->corner[k], loops->point + 2 * k, arm)) goto no_memory;
             if (!(face_length(loops, k) > longest)) continue;
-            const double half[2] = {0.5 * (b[0] - x[0]), 0.5 * (b[1] - x[1])};
-            const double middle[2] = {x[0] + half[0], x[1] + half[1]}, longer[2] = {arm[0] + half[0], arm[1] + half[1]};
-            if (!add_vertex(&even, middle, false, loops->point[k], longer)) goto no_memory;
+            const double half[2] = {0.5 * (b[0] - x[0]), 0.5 * (b[1] - x[1])}, middle[2] = {x[0] + half[0], x[1] + half[1]};
+            const uint32_t points[2] = {loops->point[2 * k + 1], loops->point[2 * loops->next[k]]};
+            const double arms[4] = {arm[2] + half[0], arm[3] + half[1], after[0] - half[0], after[1] - half[1]};
+            if (!add_vertex(&even, middle, false, points, arms)) goto no_memory;
         }
         close_loop(&even, first);
         begin = end_;

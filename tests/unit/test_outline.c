@@ -94,6 +94,16 @@ static void test_discs_and_rings_enclose_their_area(void **state) {
                     const double r = hypot(d->loops.x[2 * k] - 1, d->loops.x[2 * k + 1] - 2), on = r > 0.7 * radius ? radius : 0.4 * radius;
                     if (on > 1) assert_true(fabs(r - on) < 0.5 * 0.3 * 0.3 / on);
                 }
+                for (size_t k = 0; k < d->loops.count; k++) /* mirrored in both axes, as the points are */
+                    for (int mirror = 0; mirror < 2; mirror++) {
+                        const double x = mirror ? 2 - d->loops.x[2 * k] : d->loops.x[2 * k],
+                                     y = mirror ? d->loops.x[2 * k + 1] : 4 - d->loops.x[2 * k + 1];
+                        double nearest = INFINITY;
+                        for (size_t j = 0; j < d->loops.count; j++)
+                            nearest = fmin(nearest, hypot(d->loops.x[2 * j] - x, d->loops.x[2 * j + 1] - y));
+                        if (!(nearest < 1e-12 * radius))
+                            fail_msg("%d per cell, radius %g: (%g, %g) has no mirror image: %g", per_cell, radius, x, y, nearest);
+                    }
                 erase(d);
             }
 }
@@ -123,7 +133,7 @@ static void test_polygons_of_any_angles(void **state) {
     d = draw(&round, AB_FILL_REGULAR, 4, 2); /* edges of a quarter of a cell: a curve */
     m = measure_loops(&d->loops);
     assert_true(m.loops == 1 && m.corners == 0 && m.longest > 0.8);
-    assert_true(fabs(m.area / volume_of(d->fill) - 1) < 2e-3);
+    assert_true(fabs(m.area / volume_of(d->fill) - 1) < 4e-3);
     erase(d);
 }
 
