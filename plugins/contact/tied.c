@@ -1,4 +1,5 @@
-/* tied.c: answers contact points so that both bodies move together: no slip, no separation, once they touch (gap <= tolerance). */
+/* tied.c: answers contact points so that both bodies move together: no slip, no separation, once they touch (gap <= tolerance). A point that is tied
+ * stays so until its gap is half a cell: material of two bodies in tension drifts apart a little, as far as points follow the grid's velocities. */
 #include "abut_plugin.h"
 
 #include <math.h>
@@ -9,9 +10,12 @@ typedef struct tied {
 } tied;
 
 static const ab_param PARAMS[] = {
-    {"tolerance", "1", "points closer than this part of a cell are tied; others may only not pass through each other", NULL, AB_REAL, 0,
+    {"tolerance", "1", "points closer than this part of a cell become tied; others may only not pass through each other", NULL, AB_REAL, 0,
      0.01, 0.0, 10.0},
 };
+
+static const ab_state STATES[] = {{"tied", "1", "1 where the point was tied in the last step", AB_SCALAR, AB_COPY, 0.0}};
+static const double LET_GO = 0.5; /* of a cell */
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
     tied *law = host->allocate(host->context, sizeof *law);
@@ -34,7 +38,9 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
             approach += p->relative_velocity[c * p->ld + i] * p->normal[c * p->ld + i];
             normal_impulse += p->impulse[c * p->ld + i] * p->normal[c * p->ld + i];
         }
-        const int together = p->gap[i] <= law->tolerance * p->cell;
+        const double reach = p->state0[i] != 0.0 ? fmax(law->tolerance, LET_GO) : law->tolerance;
+        const int together = p->gap[i] <= reach * p->cell;
+        p->state1[i] = together;
         const double wanted = normal_impulse + p->normal_mass[i] * (approach - (together ? 0.0 : fmax(p->gap[i], 0.0) / p->dt));
         const double lambda = together ? wanted : fmax(0.0, wanted);
         for (size_t c = 0; c < p->dimension; ++c) {
@@ -53,10 +59,12 @@ static const ab_class CLASS = {
     .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
     .gives = AB_GIVE_IMPULSE,
     .nparam = sizeof PARAMS / sizeof *PARAMS,
+    .nstate = 1,
     .name = "tied",
     .help = "no slip and no separation once the bodies touch",
     .reference = "bilateral contact by projected Gauss-Seidel: Jean 1999",
     .param = PARAMS,
+    .state = STATES,
     .create = create,
     .destroy = destroy,
     .ops = &OPS,
