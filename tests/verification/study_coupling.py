@@ -77,8 +77,9 @@ def impact_rows():
                     rest = summary["ledger"]["remainder"] / moved
                     if rest > 0.01:
                         failures.append(f"{pair} {element} {finder} {response}: energy made, {100 * rest:.2g} %")
-                    rows.append([pair, element, finder, response, percent(e["force"]["error"]), percent(e["duration"]["error"]),
-                                 percent(e["speed of the second bar"]["error"]), percent(summary["ledger"]["end"]["contact"] / moved),
+                    stay = response == "tied"  # the bars do not part again: the exact force holds, the end does not
+                    rows.append([pair, element, finder, response, percent(e["force"]["error"]), "-" if stay else percent(e["duration"]["error"]),
+                                 "-" if stay else percent(e["speed of the second bar"]["error"]), percent(summary["ledger"]["end"]["contact"] / moved),
                                  percent(rest), f"{summary['cpu_seconds']:.2f}"])
     return rows
 
@@ -96,14 +97,16 @@ def beam_rows():
                     rows.append([element, finder, response, summary, "", "", "", "", ""])
                     continue
                 e = expects(summary)
-                deepest = next((x["value"] for x in summary["expects"] if "deflection" in x["name"]), None)
-                left = next((x["value"] for x in summary["expects"] if "leaves" in x["name"] or "slip" in x["name"]), None)
+                deepest = next((x["value"] for x in summary["expects"] if x["name"] == "the tip sinks"), None)
+                left = next((x["value"] for x in summary["expects"] if x["name"] == "free slip"), None)
                 rest = summary["ledger"]["remainder_relative"]
-                if rest > 0.02:
-                    failures.append(f"beam {element} {finder} {response}: energy made, {100 * rest:.2g} %")
+                if rest > 0.02 or (response in ("frictionless", "coulomb") and rest < -0.02):
+                    failures.append(f"beam {element} {finder} {response}: the ledger is off by {100 * rest:.2g} %")
+                if response in ("frictionless", "coulomb") and (deepest is None or abs(deepest / -0.1373 - 1) > (0.1 if element == "q4" else 0.05)):
+                    failures.append(f"beam {element} {finder} {response}: the tip sinks by {deepest} m")
                 rows.append([element, finder, response, str(summary["steps"]), "-" if deepest is None else f"{deepest:.3g}",
                              "-" if left is None else f"{left:.3g}", percent(rest),
-                             f"{1e6 * summary['contacts'][0]['deepest_penetration']:.3g}", f"{summary['cpu_seconds']:.2f}"])
+                             f"{1e3 * summary['contacts'][0]['deepest_penetration']:.3g}", f"{summary['cpu_seconds']:.2f}"])
     return rows
 
 
@@ -115,9 +118,9 @@ def table(title, heads, rows):
 text = table("Two bars meet end to end, 40 cells a bar, elements as large as cells. Errors in per cent of the exact force, of 2 L/c, of the speed; "
              "energy in per cent of the first; seconds of processor time.",
              ["bodies", "element", "finder", "response", "force", "duration", "speed", "contact loss", "remainder", "s"], impact_rows())
-text += "\n" + table("Block of points on a cantilever beam (cases/block_on_beam). Deflection of the tip and way of the block in metres, remainder in per cent of the "
-                     "largest term of the ledger, penetration in micrometres.",
-                     ["element", "finder", "response", "steps", "deflection", "slip", "remainder", "deepest", "s"], beam_rows())
+text += "\n" + table("Block of points on a cantilever beam (cases/block_on_beam). Lowest place of the tip in metres, time in seconds when the middle of the block passes it, remainder in per cent of the "
+                     "largest term of the ledger, deepest overlap in millimetres (as the block turns over the edge). Reference: -0.137 m and 2.23 s.",
+                     ["element", "finder", "response", "steps", "tip", "passes", "remainder", "deepest", "s"], beam_rows())
 print(text)
 if WRITE:
     with open(PAGE) as stream:
