@@ -25,7 +25,7 @@ enum { CLOSED, NEWTON };
 enum { BOTH, FIRST, SECOND };
 enum { MOST_HITS = 32, MOST_SLOTS = 4 };
 static const double EDGE = 1e-9;                                   /* of a face's length: nearer than this is on its end */
-static const double NEAR = 0.1;                                    /* of a cell: given out although the bodies do not meet in this step */
+static const double NEAR = 0.03;                                   /* of a cell: given out although the bodies do not meet in this step */
 static const double SAME_WAY = 0.8660254037844386, CAN_MEET = 0.5; /* cosines of 30 and 60 degrees */
 
 static const ab_param PARAMS[] = {

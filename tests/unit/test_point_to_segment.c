@@ -68,7 +68,7 @@ static size_t look(finder *f, surface_body *a, surface_body *b, double reach) {
     }
     all_near(f, 0, surface[0], surface[1]);
     all_near(f, 1, surface[1], surface[0]);
-    f->points.view.cell = 10 * reach; /* a tenth of a cell is given out whatever the speed */
+    f->points.view.cell = reach / 0.03; /* a small part of a cell is given out whatever the speed */
     f->points.view.failures = 0;
     assert_int_equal(f->class_->contact.find(f->self, &f->a, &f->b, &f->points.view), 0);
     const ab_points *p = &f->points.view;
