@@ -7,6 +7,10 @@
 
 #include "abut_plugin.h"
 
+/* As fmax and fmin, a NaN being ignored, but inline: calls of the library's cost ten times as much. */
+static inline double larger(double a, double b) { return b > a || a != a ? b : a; }
+static inline double smaller(double a, double b) { return b < a || a != a ? b : a; }
+
 enum { FACE_MOST_STEPS = 30 };
 static const double FACE_TOLERANCE = 1e-12; /* of a face's length: of the projection */
 
@@ -36,6 +40,10 @@ static int curve_of(const ab_surface *s, uint32_t face, curve *c) {
     c->length = sqrt(square);
     return c->length >= FACE_SHORTEST && c->length <= FACE_LONGEST && fabs(c->bow[0]) + fabs(c->bow[1]) <= FACE_LONGEST &&
            isfinite(c->from[0] + c->from[1]);
+}
+
+static void place_of(const curve *c, double xi, double x[2]) {
+    for (int d = 0; d < 2; ++d) x[d] = c->from[d] + 0.5 * (1.0 + xi) * c->along[d] + (1.0 - xi * xi) * c->bow[d];
 }
 
 static void slope_at(const curve *c, double xi, double slope[2]) {

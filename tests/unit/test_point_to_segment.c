@@ -442,6 +442,45 @@ static void test_equal_corners_meet_face_to_face(void **state) {
     finder_close(&f);
 }
 
+/* A round body of parabolas above a face, turned by any angle: the gap is that of its lowest place, not of its lowest node. */
+static void test_round_body_touches_between_its_nodes(void **state) {
+    (void)state;
+    enum { NODES = 32, ANGLES = 200, SAMPLES = 4000 };
+    finder f;
+    finder_open(&f, NULL, 0);
+    surface_body *plane = box("plane", -5, -1, 5, 0);
+    double worst = 0, nodes = 0;
+    for (int k = 0; k < ANGLES; k++) {
+        double corner[NODES][2], lowest = INFINITY, node = INFINITY;
+        for (int n = 0; n < NODES; n++) {
+            const double angle = 2 * 3.141592653589793 * (n / (double)NODES + k / (double)ANGLES);
+            corner[n][0] = cos(angle);
+            corner[n][1] = 1.001 + sin(angle);
+            node = fmin(node, corner[n][1]);
+        }
+        surface_body *wheel = surface_polygon("wheel", (const double(*)[2])corner, NODES, true, 0);
+        for (size_t face = 0; face < wheel->faces; face++)
+            for (int sample = 0; sample <= SAMPLES; sample++) {
+                double r[2];
+                place_on(wheel, face, -1 + 2.0 * sample / SAMPLES, r);
+                lowest = fmin(lowest, r[1]);
+            }
+        const size_t count = look(&f, wheel, plane, 0.05);
+        double least = INFINITY;
+        for (size_t i = 0; i < count; i++) {
+            least = fmin(least, gap(&f, i));
+            near(ny(&f, i), -1, 1e-15);
+        }
+        worst = fmax(worst, fabs(least - lowest));
+        nodes = fmax(nodes, node - lowest);
+        surface_body_destroy(wheel);
+    }
+    print_message("lowest place off by %.1e, lowest node by %.1e\n", worst, nodes);
+    assert_true(worst <= 1e-7 && nodes > 1e-3); /* of the samples: (1/4000)^2 */
+    surface_body_destroy(plane);
+    finder_close(&f);
+}
+
 /* ---- sizes and areas ------------------------------------------------------------------------------------------------------------ */
 
 static void test_half_size(void **state) {
@@ -593,6 +632,7 @@ int main(void) {
         cmocka_unit_test(test_inside_finds_the_nearest_face_alone),
         cmocka_unit_test(test_thin_body_keeps_the_side),
         cmocka_unit_test(test_equal_corners_meet_face_to_face),
+        cmocka_unit_test(test_round_body_touches_between_its_nodes),
         cmocka_unit_test(test_half_size),
         cmocka_unit_test(test_areas_add_up_to_the_length),
         cmocka_unit_test(test_faces_without_length_are_passed_over_and_counted),
