@@ -7,6 +7,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <muParserDLL.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -256,4 +257,18 @@ double ab_number_at(const ab_number *number, double t, double x, double y, doubl
     expression->variable[3] = z;
     const double value = mupEval(expression->parser);
     return mupError(expression->parser) ? NAN : number->value * value;
+}
+
+ab_status ab_number_finite(const ab_number *number, double value, double t, const double place[2], ab_report *report, const char *name,
+                           ...) {
+    if (isfinite(value)) return AB_OK;
+    char formula[AB_FORMULA_TEXT / 8], where[80] = "";
+    va_list arguments;
+    va_start(arguments, name);
+    vsnprintf(formula, sizeof formula, name, arguments);
+    va_end(arguments);
+    if (place != NULL) snprintf(where, sizeof where, " at (%.6g, %.6g) m", place[0], place[1]);
+    static const char remedy[] = "which is no finite number; write a formula that has a value there, if need be with (condition ? a : b)";
+    if (t > 0.0) return ab_report_failure(report, "%s is %g at t = %.9g s%s, %s", formula, value, t, where, remedy);
+    return ab_report_error(report, number->mark, "%s is %g at t = 0 s%s, %s", formula, value, where, remedy);
 }

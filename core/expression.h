@@ -16,6 +16,10 @@ typedef struct ab_number {
 /* Value at time t (s) and place x, y, z (m). A formula that does not know a variable ignores it. NaN is possible: callers that cannot
  * live with it check. */
 double ab_number_at(const ab_number *number, double t, double x, double y, double z);
+/* A value just found that is no finite number stops the run, with the name of the formula (printf), the time, the place (m, as drawn; NULL: none)
+ * and the value. At t = 0, before the first step, it is a mistake in the scene: AB_BAD_INPUT at its mark; later AB_FAILED. */
+ab_status ab_number_finite(const ab_number *number, double value, double t, const double place[2], ab_report *report, const char *name, ...)
+    __attribute__((format(printf, 6, 7)));
 static inline bool ab_number_is_constant(const ab_number *number) { return number->expression == NULL; }
 
 /* Variables that a formula may use. */

@@ -12,6 +12,15 @@ static const double SAME_PLACE = 1e-12, RIGID_FIELD = 1e-9; /* of the body's siz
 
 static double formula(const ab_number *number, double time) { return ab_number_at(number, time, 0.0, 0.0, 0.0); }
 
+/* A component of the given velocity, m/s, or (2) the given spin, 1/s. */
+static ab_status motion_at(const rigid_body *body, int component, double time, double *value, ab_report *report) {
+    const ab_body_spec *spec = body->domain.spec;
+    const ab_number *number = component < 2 ? spec->motion.velocity + component : &spec->motion.spin;
+    static const char *const NAME[3] = {"velocity[0]", "velocity[1]", "spin"};
+    *value = formula(number, time);
+    return ab_number_finite(number, *value, time, NULL, report, "bodies.%s.motion.%s", spec->name, NAME[component]);
+}
+
 /* Half the diagonal of the vertices' box about the centre, m. */
 static double size_of(const rigid_outline *o) {
     double far = 0.0;
@@ -126,10 +135,10 @@ ab_status rigid_motion_create(rigid_body *body, ab_report *report) {
         body->reference[c] = body->centre[c] - body->offset[c];
     }
     AB_TRY(start_velocity(body, reference, report));
-    if (body->held_spin) body->spin = formula(&m->spin, 0.0);
+    if (body->held_spin) AB_TRY(motion_at(body, 2, 0.0, &body->spin, report));
     for (int c = 0; c < 2; ++c)
         if (body->held[c]) {
-            body->velocity[c] = formula(m->velocity + c, 0.0);
+            AB_TRY(motion_at(body, c, 0.0, body->velocity + c, report));
             if (!body->hinged) body->velocity[c] += c ? body->spin * body->arm[0] : -body->spin * body->arm[1];
         }
     AB_TRY(find_loads(body, report));
@@ -165,7 +174,11 @@ ab_status rigid_begin(ab_domain *domain, const ab_step *step, ab_report *report)
     for (size_t k = 0; k < body->load_count; ++k) {
         double arm[2], force[2];
         load_of(body, k, step, arm, force);
-        for (int c = 0; c < 2; ++c) body->force[c] += force[c];
+        for (int c = 0; c < 2; ++c) {
+            AB_TRY(ab_number_finite(body->scene->loads[body->loads[k]].force + c, force[c], step->time + 0.5 * step->dt, NULL, report,
+                                    "loads[%u].force[%d]", body->loads[k], c));
+            body->force[c] += force[c];
+        }
         body->force[2] += arm[0] * force[1] - arm[1] * force[0];
     }
     return rigid_surface_follow(body, report);
@@ -173,17 +186,16 @@ ab_status rigid_begin(ab_domain *domain, const ab_step *step, ab_report *report)
 
 ab_status rigid_trial(ab_domain *domain, const ab_step *step, ab_report *report) {
     rigid_body *body = (rigid_body *)domain;
-    const ab_motion_spec *m = &domain->spec->motion;
     const double middle = step->time + 0.5 * step->dt, dt = step->dt;
     const double *r = body->offset;
-    if (body->held_spin) body->spin = formula(&m->spin, middle);
+    if (body->held_spin) AB_TRY(motion_at(body, 2, middle, &body->spin, report));
     const double turned = body->angle + dt * body->spin, c1 = cos(turned), s1 = sin(turned);
     for (int c = 0; c < 2; ++c) {
         if (!body->held[c]) {
             body->velocity[c] = body->old[c] + dt * body->force[c] / body->mass;
             continue;
         }
-        body->velocity[c] = formula(m->velocity + c, middle);
+        AB_TRY(motion_at(body, c, middle, body->velocity + c, report));
         if (body->hinged || (body->arm[0] == 0.0 && body->arm[1] == 0.0)) continue;
         /* the centre of mass goes straight to where the given place and angle put it */
         const double arm = c ? s1 * body->arm[0] + c1 * body->arm[1] : c1 * body->arm[0] - s1 * body->arm[1];

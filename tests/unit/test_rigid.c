@@ -439,6 +439,39 @@ static void test_what_cannot_be_is_refused(void **state) {
     refused("shape: {box: [[0, 0], [1, 1]]}, motion: {velocity: [1, null], spin: 0}", "", "mass");
 }
 
+/* A formula without a value: named at the start, at its line, and in the step where it loses it. */
+static void test_formulas_without_a_value_are_named(void **state) {
+    (void)state;
+    static const char body[] = "material: m, shape: {box: [[0, 0], [1, 1]]}";
+    static const struct {
+        const char *body, *more, *start, *later;
+    } wrong[] = {
+        {", motion: {velocity: [0, 0], spin: 1/t}", "", ":5:107: error: bodies.b.motion.spin is inf at t = 0 s, which is no finite number", NULL},
+        {", motion: {velocity: [0, log(t)]}", "", "error: bodies.b.motion.velocity[1] is -inf at t = 0 s", NULL},
+        {", motion: {velocity: [sqrt(0.0012-t), 0]}", "", NULL, "bodies.b.motion.velocity[0] is "},
+        {", motion: {spin: sqrt(0.0012-t)}", "", NULL, "bodies.b.motion.spin is "},
+        {"", "loads: [{body: b, at: [0, 0], force: [0, sqrt(0.0012-t)]}]\n", NULL, "loads[0].force[1] is "},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        char text[400];
+        snprintf(text, sizeof text, "%s%s", body, wrong[k].body);
+        if (wrong[k].start) {
+            refused(text, wrong[k].more, wrong[k].start);
+            continue;
+        }
+        one o = create(text, wrong[k].more);
+        step(&o, NULL);
+        ab_status status = o.domain->ops->begin(o.domain, &o.step, o.report);
+        if (status == AB_OK) status = o.domain->ops->trial(o.domain, &o.step, o.report);
+        assert_int_equal(status, AB_FAILED);
+        const char *said = ab_report_text(o.report, 0);
+        if (!strstr(said, wrong[k].later) || !strstr(said, "nan at t = 0.0015 s")) say_all(&o);
+        assert_non_null(strstr(said, wrong[k].later));
+        assert_non_null(strstr(said, "nan at t = 0.0015 s"));
+        clear(&o);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_area_centre_and_inertia),
@@ -450,6 +483,7 @@ int main(void) {
         cmocka_unit_test(test_ledger_closes),
         cmocka_unit_test(test_momenta_of_a_free_body),
         cmocka_unit_test(test_what_cannot_be_is_refused),
+        cmocka_unit_test(test_formulas_without_a_value_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
