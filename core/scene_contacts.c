@@ -7,9 +7,10 @@
 
 enum { MOST_CONTACTS = 10000, MOST_NAMES = 256, MOST_ENTRIES = 1000, MOST_WARNINGS = 20 };
 
-typedef struct pairs { /* who meets whom so far: 1 + place in the list of the scene; 0: nobody */
+typedef struct pairs { /* who meets whom so far: 1 + entry of `contact`; 0: nobody */
     uint32_t *entry;
-    size_t bodies;
+    size_t bodies, now; /* now: the entry that is read */
+    const ab_node *list;
 } pairs;
 
 static uint32_t *pair(pairs *all, size_t a, size_t b) { return &all->entry[(a < b ? a : b) * all->bodies + (a < b ? b : a)]; }
@@ -61,8 +62,11 @@ static void add_pair(ab_scene_reader *r, pairs *all, const ab_contact_spec *cont
     ab_scene *scene = r->scene;
     uint32_t *seen = pair(all, a, b);
     if (*seen != 0) {
-        ab_report_error(r->base.report, mark, "%s: bodies '%s' and '%s' meet already in the entry of line %d; one entry a pair", where,
-                        scene->bodies[a].name, scene->bodies[b].name, scene->contacts[*seen - 1].mark.line);
+        const int at = all->list->items[*seen - 1]->mark.line; /* 0: written with --set */
+        char line[32] = "";
+        if (at > 0) snprintf(line, sizeof line, " (line %d)", at);
+        ab_report_error(r->base.report, mark, "%s: bodies '%s' and '%s' meet already in contact[%u]%s; one entry a pair", where,
+                        scene->bodies[a].name, scene->bodies[b].name, *seen - 1, line);
         return;
     }
     if (scene->contact_count == MOST_CONTACTS) {
@@ -72,7 +76,8 @@ static void add_pair(ab_scene_reader *r, pairs *all, const ab_contact_spec *cont
     scene->contacts[scene->contact_count] = *contact;
     scene->contacts[scene->contact_count].body[0] = a;
     scene->contacts[scene->contact_count].body[1] = b;
-    *seen = (uint32_t)++scene->contact_count;
+    scene->contact_count++;
+    *seen = (uint32_t)all->now + 1;
 }
 
 static void take_pair(ab_scene_reader *r, pairs *all, const ab_node *node, const char *where, const ab_contact_spec *contact) {
@@ -137,7 +142,7 @@ void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
     }
     size_t room = bodies * (bodies > 0 ? bodies - 1 : 0) / 2;
     if (room > MOST_CONTACTS) room = MOST_CONTACTS;
-    pairs all = {ab_reader_take(&r->base, bodies * bodies, sizeof(uint32_t)), bodies};
+    pairs all = {ab_reader_take(&r->base, bodies * bodies, sizeof(uint32_t)), bodies, 0, node};
     scene->contacts = ab_reader_take(&r->base, room, sizeof *scene->contacts);
     if (all.entry == NULL || scene->contacts == NULL) return;
     if (node != NULL) ab_scene_is_list(r, node, "contact", "entries - {bodies: [a, b], algorithm: ...}");
@@ -145,6 +150,7 @@ void ab_scene_take_contacts(ab_scene_reader *r, const ab_node *node) {
         char where[AB_WHERE];
         const ab_node *v[CONTACT_KEYS];
         snprintf(where, sizeof where, "contact[%zu]", i);
+        all.now = i;
         ab_contact_spec contact = {.mark = node->items[i]->mark};
         if (!ab_section_open(&r->base, &ab_section_contact, node->items[i], where, v)) continue;
         take_plugins(r, node->items[i], v, where, &contact);

@@ -78,7 +78,7 @@ static const mistake mistakes[] = {
     {"multi-velocity", "multi-velocty", "there is no plugin 'multi-velocty'; did you mean 'multi-velocity'?"},
     {"multi-velocity", "coulomb", "gives impulses but finds no contact points"},
     {"multi-velocity", "multi-velocity\n    response: multi-velocity", "finds contact points but gives no impulses"},
-    {"    friction: mu", "    friction: mu\n  - {bodies: [plane, block], algorithm: both}", "bodies 'plane' and 'block' meet already in the entry of line 25"},
+    {"    friction: mu", "    friction: mu\n  - {bodies: [plane, block], algorithm: both}", "bodies 'plane' and 'block' meet already in contact[0] (line 25); one entry a pair"},
     {"material: rubber", "material: ruber", "bodies.plane.material: there is no material 'ruber'; did you mean 'rubber'?"},
     {"model: linear-elastic", "model: linear_elastik", "did you mean 'linear-elastic'?"},
     {"model: linear-elastic", "model: only-3d", "does not work in plane strain"},

@@ -99,6 +99,10 @@ static void test_wrong_overrides_are_said_with_every_other_mistake(void **state)
     assert_true(said(&o, ":2:1: error: unknown key 'tittle'"));
     assert_int_equal(ab_report_errors(o.report), 6);
     forget(&o);
+    o = with("contact", "[{bodies: [plane, block], algorithm: both}, {bodies: [block, plane], algorithm: both}]");
+    assert_int_equal(o.status, AB_BAD_INPUT);
+    assert_true(said(&o, "contact[1]: bodies 'block' and 'plane' meet already in contact[0]; one entry a pair"));
+    forget(&o);
     o = with("constants.nu", "1");
     assert_int_equal(o.status, AB_OK);
     assert_true(said(&o, "--set constants.nu: warning: constants.nu is not in the file"));
