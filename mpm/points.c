@@ -117,7 +117,11 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
             const double volume = fill->volume[i];
             for (int c = 0; c < 2; ++c) {
                 b[8 * (ROW_X + c) + l] = b[8 * (ROW_NEXT + c) + l] = x[c];
-                b[8 * (ROW_V + c) + l] = ab_number_at(body->domain.spec->velocity + c, 0.0, fill->x[i], fill->y[i], 0.0);
+                const ab_body_spec *spec = body->domain.spec;
+                const double at[2] = {fill->x[i], fill->y[i]}, v = ab_number_at(spec->velocity + c, 0.0, at[0], at[1], 0.0);
+                if (status == AB_OK)
+                    status = ab_number_finite(spec->velocity + c, v, 0.0, at, report, "bodies.%s.velocity[%d]", spec->name, c);
+                b[8 * (ROW_V + c) + l] = v;
             }
             b[8 * ROW_MASS + l] = density * volume;
             b[8 * ROW_VOLUME + l] = volume;
@@ -142,7 +146,7 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
     free(places);
     body->block_count = block;
     body->points = body->born = count;
-    return AB_OK;
+    return status;
 }
 
 static void index_points(mpm_body *body) {

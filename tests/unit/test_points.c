@@ -202,12 +202,25 @@ static void test_sorting_changes_nothing(void **state) {
     one_body_destroy(often);
 }
 
+static void test_a_start_velocity_without_a_value_is_named(void **state) {
+    (void)state;
+    one_body *one = calloc(1, sizeof *one);
+    const char *text = scene("gimp", "musl", "shape: {box: [[0, 0], [1, 1]]}, fill: {rule: regular, per_cell: 4}, velocity: [0, 1/(x-0.125)]");
+    assert_int_equal(one_body_attempt(one, text, 1), AB_BAD_INPUT);
+    const char *said = ab_report_first_error(one->report);
+    assert_non_null(said);
+    if (!strstr(said, "error: bodies.b.velocity[1] is inf at t = 0 s at (0.125, ")) print_error("%s\n", said);
+    assert_non_null(strstr(said, "error: bodies.b.velocity[1] is inf at t = 0 s at (0.125, "));
+    one_body_destroy(one);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_partition_of_unity_and_linear_precision_hold_at_walls),
         cmocka_unit_test(test_gradients_are_slopes),
         cmocka_unit_test(test_no_point_is_lost),
         cmocka_unit_test(test_sorting_changes_nothing),
+        cmocka_unit_test(test_a_start_velocity_without_a_value_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
