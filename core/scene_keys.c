@@ -169,7 +169,9 @@ static const ab_key fix[] = {
     [FIX_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
                       .help = "their velocity; null in place of a number leaves that direction free"},
 };
-SECTION(fix, "bodies.NAME.fix[i]", fix, NULL, "A list. Nodes of a finite-element body whose velocity is given.",
+SECTION(fix, "bodies.NAME.fix[i]", fix, NULL,
+        "A list. Nodes of a finite-element body whose velocity is given. Where two entries give one node a velocity in the same direction, "
+        "the last one holds; a warning says so when they differ.",
         "fix:\n  - {where: {x: 0}, velocity: [0, 0]}\n  - {where: {side: top}, velocity: [null, \"-0.1*t\"]}\n");
 
 static const ab_key motion[] = {

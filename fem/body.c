@@ -64,16 +64,15 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     fem_body *body = (fem_body *)domain;
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
     fem_nodes_force(body);
-    fem_loads_add(body, step);
+    AB_TRY(fem_loads_add(body, step, report));
     return body->trace ? fem_inner_follow(body, step->number, report) : AB_OK;
 }
 
 static ab_status trial(ab_domain *domain, const ab_step *step, ab_report *report) {
-    (void)report;
     fem_body *body = (fem_body *)domain;
     fem_nodes_trial(body, step);
     if (body->held_count) {
-        fem_held_move(body, step->time + 0.5 * step->dt);
+        AB_TRY(fem_held_move(body, step->time + 0.5 * step->dt, report));
         memset(body->impulse, 0, 2 * body->nodes * sizeof *body->impulse);
     }
     body->open = true;
@@ -343,9 +342,12 @@ static ab_status make(fem_body *body, ab_report *report) {
     }
     AB_TRY(fem_outer_create(body, faces, report));
     for (size_t i = 0; i < body->nodes; ++i)
-        for (size_t c = 0; c < 2; ++c)
-            body->velocity[2 * i + c] = ab_number_at(spec->velocity + c, 0.0, body->mesh->x[2 * i], body->mesh->x[2 * i + 1], 0.0);
-    fem_held_move(body, 0.0);
+        for (size_t c = 0; c < 2; ++c) {
+            const double *x = body->mesh->x + 2 * i, v = ab_number_at(spec->velocity + c, 0.0, x[0], x[1], 0.0);
+            AB_TRY(ab_number_finite(spec->velocity + c, v, 0.0, x, report, "bodies.%s.velocity[%zu]", spec->name, c));
+            body->velocity[2 * i + c] = v;
+        }
+    AB_TRY(fem_held_move(body, 0.0, report));
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
     fem_elements_start(body);
     fem_critical(body, true);

@@ -191,10 +191,10 @@ void fem_batch_settle(const fem_batch *, const fem_body *, size_t block, fem_blo
 /* loads.c */
 ab_status fem_loads_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_held_create(fem_body *, const fem_faces *, ab_report *);
-void fem_loads_add(fem_body *, const ab_step *);  /* to force */
-void fem_loads_work(fem_body *, const ab_step *); /* energy.external */
-void fem_held_move(fem_body *, double time);      /* their velocities at a time, to velocity */
-void fem_held_work(fem_body *, const ab_step *);  /* force and work of the supports */
+ab_status fem_loads_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
+void fem_loads_work(fem_body *, const ab_step *);                  /* energy.external */
+ab_status fem_held_move(fem_body *, double time, ab_report *);     /* their velocities at a time, to velocity */
+void fem_held_work(fem_body *, const ab_step *);                   /* force and work of the supports */
 
 /* fields.c */
 ab_status fem_fields_create(fem_body *, ab_report *);

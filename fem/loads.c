@@ -1,6 +1,7 @@
 /* loads.c: tractions and pressures on the outer faces, forces at nodes, and nodes whose velocity is given. A traction acts on the initial length of a face and keeps
  * its direction, as on material points; a pressure acts on the face as it lies now. Nodes get the integrals of their basis functions along the face. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -53,6 +54,33 @@ static uint32_t nearest_node(const fem_mesh *mesh, const double at[2]) {
     return best;
 }
 
+/* The longest diagonal of the elements at a node, m. */
+static double reach_of(const fem_mesh *mesh, uint32_t node) {
+    double longest = 0.0;
+    const size_t nodes = (size_t)mesh->nodes;
+    for (size_t k = 0; k < nodes * mesh->element_count; ++k) {
+        if (mesh->connectivity[k] != node) continue;
+        const uint32_t *corner = mesh->connectivity + k / nodes * nodes;
+        for (int a = 0; a < 2; ++a) {
+            const double *from = mesh->x + 2 * (size_t)corner[a], *to = mesh->x + 2 * (size_t)corner[a + 2];
+            longest = fmax(longest, hypot(to[0] - from[0], to[1] - from[1]));
+        }
+    }
+    return longest;
+}
+
+/* A force acts on a node; one that is drawn beside the body is more often a slip than meant. */
+static void warn_far(const fem_body *body, uint32_t spec, uint32_t node, ab_report *report) {
+    const ab_load_spec *load = body->scene->loads + spec;
+    const double *x = body->mesh->x + 2 * (size_t)node, far = hypot(x[0] - load->at[0], x[1] - load->at[1]);
+    if (far > reach_of(body->mesh, node))
+        ab_report_warning(
+            report, load->mark,
+            "loads[%u].at: (%g, %g) m is %.4g m from the nearest node of '%s', more than the size of an element; the force acts on that "
+            "node, at (%.6g, %.6g) m",
+            spec, load->at[0], load->at[1], far, body->domain.spec->name, x[0], x[1]);
+}
+
 static ab_status add_load(fem_body *body, const fem_load *load, ab_report *report) {
     if (!ab_memory_grow((void **)&body->loads, &body->load_capacity, body->load_count + 1, sizeof *body->loads))
         return ab_report_failure(report, "body '%s': no memory for its loads", body->domain.spec->name);
@@ -64,6 +92,7 @@ static ab_status spread(fem_body *body, const fem_faces *faces, uint32_t spec, a
     const ab_load_spec *load = body->scene->loads + spec;
     if (load->point) {
         const fem_load one = {.node = {nearest_node(body->mesh, load->at), FEM_NONE, FEM_NONE}, .spec = spec, .share = {1.0, 0.0, 0.0}};
+        warn_far(body, spec, one.node[0], report);
         return add_load(body, &one, report);
     }
     const size_t before = body->load_count;
@@ -87,7 +116,7 @@ ab_status fem_loads_create(fem_body *body, const fem_faces *faces, ab_report *re
 }
 
 /* A pressure, or a traction that depends on the place: force = integral of N (-p n or t) along the face. */
-static void integrate(const fem_body *body, const ab_load_spec *spec, double time, fem_load *load) {
+static ab_status integrate(const fem_body *body, const ab_load_spec *spec, double time, fem_load *load, ab_report *report) {
     memset(load->force, 0, sizeof load->force);
     for (int q = 0; q < PLACES; ++q) {
         const face_point start = point_on(body->mesh->x, load->node, PLACE[q]);
@@ -96,13 +125,19 @@ static void integrate(const fem_body *body, const ab_load_spec *spec, double tim
         if (spec->press) {
             const face_point now = point_on(body->x, load->node, PLACE[q]);
             const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
+            AB_TRY(ab_number_finite(&spec->pressure, p, time, start.place, report, "loads[%u].pressure", load->spec));
             per_run[0] = -p * now.run[1], per_run[1] = p * now.run[0]; /* the body is on the left of a face */
         } else {
-            for (int c = 0; c < 2; ++c) per_run[c] = hypot(start.run[0], start.run[1]) * ab_number_at(spec->traction + c, time, x, y, 0.0);
+            for (int c = 0; c < 2; ++c) {
+                const double t = ab_number_at(spec->traction + c, time, x, y, 0.0);
+                AB_TRY(ab_number_finite(spec->traction + c, t, time, start.place, report, "loads[%u].traction[%d]", load->spec, c));
+                per_run[c] = hypot(start.run[0], start.run[1]) * t;
+            }
         }
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < 2; ++c) load->force[k][c] += WEIGHT[q] * start.n[k] * per_run[c];
     }
+    return AB_OK;
 }
 
 static bool uniform(const ab_load_spec *spec) {
@@ -111,7 +146,7 @@ static bool uniform(const ab_load_spec *spec) {
     return !spec->press && !(used & AB_VARIABLES_XY);
 }
 
-void fem_loads_add(fem_body *body, const ab_step *step) {
+ab_status fem_loads_add(fem_body *body, const ab_step *step, ab_report *report) {
     const double time = step->time + 0.5 * step->dt;
     double force[2] = {0.0, 0.0};
     bool same = false;
@@ -120,17 +155,22 @@ void fem_loads_add(fem_body *body, const ab_step *step) {
         const ab_load_spec *spec = body->scene->loads + load->spec;
         if (k == 0 || load->spec != load[-1].spec) {
             same = uniform(spec);
-            for (int c = 0; c < 2 && same; ++c)
-                force[c] = ab_number_at((spec->point ? spec->force : spec->traction) + c, time, 0.0, 0.0, 0.0);
+            for (int c = 0; c < 2 && same; ++c) {
+                const ab_number *number = (spec->point ? spec->force : spec->traction) + c;
+                force[c] = ab_number_at(number, time, 0.0, 0.0, 0.0);
+                AB_TRY(ab_number_finite(number, force[c], time, NULL, report, "loads[%u].%s[%d]", load->spec,
+                                        spec->point ? "force" : "traction", c));
+            }
         }
         if (same)
             for (int a = 0; a < 3; ++a)
                 for (int c = 0; c < 2; ++c) load->force[a][c] = load->share[a] * force[c];
         else
-            integrate(body, spec, time, load);
+            AB_TRY(integrate(body, spec, time, load, report));
         for (int a = 0; a < 3 && load->node[a] != FEM_NONE; ++a)
             for (size_t c = 0; c < 2; ++c) body->force[2 * (size_t)load->node[a] + c] += load->force[a][c];
     }
+    return AB_OK;
 }
 
 void fem_loads_work(fem_body *body, const ab_step *step) {
@@ -146,6 +186,41 @@ void fem_loads_work(fem_body *body, const ab_step *step) {
 
 /* ---- nodes whose velocity is given --------------------------------------------------------------------------------------- */
 
+/* Whether two formulas give the same velocity all the time; looked at here and there in the run. */
+static bool same_velocity(const ab_number *a, const ab_number *b, double end) {
+    enum { LOOKS = 8 };
+    for (int k = 0; k < LOOKS; ++k) {
+        const double t = end * k / LOOKS * 0.987;
+        if (ab_number_at(a, t, 0.0, 0.0, 0.0) != ab_number_at(b, t, 0.0, 0.0, 0.0)) return false;
+    }
+    return true;
+}
+
+/* Warns, once an entry, where it takes the place of an earlier one that says something else: in one direction, at nodes of both. */
+static void warn_conflict(const fem_body *body, size_t entry, const uint32_t *fix, const fem_faces *faces, ab_report *report) {
+    const ab_body_spec *spec = body->domain.spec;
+    const ab_fix_spec *last = spec->fix + entry;
+    size_t other = SIZE_MAX, node = 0, many = 0;
+    int direction = 0;
+    for (size_t d = 0; d < 2 * body->nodes; ++d) {
+        const size_t before = fix[d] ? fix[d] - 1 : SIZE_MAX;
+        if (before == SIZE_MAX || !last->has[d % 2] || (other != SIZE_MAX && before != other)) continue;
+        if (!fem_where_node(&last->where, body->mesh, faces, (uint32_t)(d / 2))) continue;
+        if (before != other && same_velocity(spec->fix[before].velocity + d % 2, last->velocity + d % 2, body->scene->time_end)) continue;
+        if (other == SIZE_MAX) other = before, node = d / 2, direction = (int)(d % 2);
+        many += (int)(d % 2) == direction;
+    }
+    if (other == SIZE_MAX) return;
+    char line[32] = "";
+    if (spec->fix[other].where.mark.line > 0) snprintf(line, sizeof line, " (line %d)", spec->fix[other].where.mark.line);
+    ab_report_warning(
+        report, last->where.mark,
+        "bodies.%s.fix[%zu] gives %zu node%s another velocity along %c than fix[%zu]%s, the first at (%.6g, %.6g) m; the last entry "
+        "holds, fix[%zu]: leave the node out of one of them, or write null for that direction",
+        spec->name, entry, many, many == 1 ? "" : "s", direction ? 'y' : 'x', other, line, body->mesh->x[2 * node],
+        body->mesh->x[2 * node + 1], entry);
+}
+
 ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *report) {
     const ab_body_spec *spec = body->domain.spec;
     uint32_t *fix = ab_memory_take(2 * body->nodes *
@@ -154,6 +229,7 @@ ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *rep
     ab_status status = AB_OK;
     for (size_t f = 0; f < spec->fix_count; ++f) {
         bool met = false;
+        if (f > 0) warn_conflict(body, f, fix, faces, report);
         for (size_t i = 0; i < body->nodes; ++i) {
             if (!fem_where_node(&spec->fix[f].where, body->mesh, faces, (uint32_t)i)) continue;
             met = true;
@@ -181,14 +257,20 @@ ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *rep
     return status;
 }
 
-void fem_held_move(fem_body *body, double time) {
+ab_status fem_held_move(fem_body *body, double time, ab_report *report) {
     const ab_body_spec *spec = body->domain.spec;
     for (size_t f = 0; f < 2 * spec->fix_count; ++f)
-        if (spec->fix[f / 2].has[f % 2]) body->given[f] = ab_number_at(spec->fix[f / 2].velocity + f % 2, time, 0.0, 0.0, 0.0);
+        if (spec->fix[f / 2].has[f % 2]) {
+            const ab_number *number = spec->fix[f / 2].velocity + f % 2;
+            body->given[f] = ab_number_at(number, time, 0.0, 0.0, 0.0);
+            AB_TRY(
+                ab_number_finite(number, body->given[f], time, NULL, report, "bodies.%s.fix[%zu].velocity[%zu]", spec->name, f / 2, f % 2));
+        }
     for (size_t k = 0; k < body->held_count; ++k) {
         const fem_held *held = body->held + k;
         body->velocity[2 * (size_t)held->node + held->component] = body->given[2 * (size_t)held->fix + held->component];
     }
+    return AB_OK;
 }
 
 /* What the support gives is what the node gains beyond elements, loads, weight and contact; its work is exact for the node's kinetic energy. */

@@ -28,9 +28,8 @@ typedef struct one {
 } one;
 
 /* A skew patch of 6 x 4 elements beside a block of points, with a contact on shared nodes. */
-static one *create(const char *type, const char *material, const char *more) {
+static ab_status attempt(one *o, const char *type, const char *material, const char *more, const char *sections) {
     char text[4000], path[] = "/tmp/abut-fem-XXXXXX", plugins[4096];
-    one *o = calloc(1, sizeof *o);
     snprintf(text, sizeof text,
              "abut: 1\nspace: plane-strain\ntime: {end: 1e4, dt: 0.001}\ngrid: {from: [-3, -2], to: [9, 8], cell: 0.4}\n"
              "materials: {m: {%s, density: 2}}\n"
@@ -39,8 +38,8 @@ static one *create(const char *type, const char *material, const char *more) {
              "[[0.5, 2], [2.5, 2.5]], "
              "left: [[0, 0], [0.5, 2]]}, elements: [6, 4], type: %s}%s}\n"
              "  p: {method: material-points, material: m, shape: {box: [[5, 0], [6, 1]]}}\n"
-             "contact: [{bodies: [b, p], algorithm: multi-velocity, response: frictionless}]\n",
-             material, type, more);
+             "contact: [{bodies: [b, p], algorithm: multi-velocity, response: frictionless}]\n%s",
+             material, type, more, sections);
     const int handle = mkstemp(path);
     assert_true(handle >= 0);
     assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
@@ -50,16 +49,24 @@ static one *create(const char *type, const char *material, const char *more) {
     ab_status status = ab_registry_create(plugins, &o->registry, o->report);
     if (status == AB_OK) status = ab_scene_read(path, NULL, 0, o->registry, &o->scene, o->report);
     if (status == AB_OK) status = fem_create(o->scene, 0, 1, &o->domain, o->report);
-    for (size_t i = 0; status != AB_OK && ab_report_text(o->report, i); i++) print_error("%s\n", ab_report_text(o->report, i));
-    assert_int_equal(status, AB_OK);
     o->body = (fem_body *)o->domain;
     o->step = (ab_step){.dt = 1e-3};
     unlink(path);
+    return status;
+}
+
+static one *create_with(const char *type, const char *material, const char *more, const char *sections) {
+    one *o = calloc(1, sizeof *o);
+    const ab_status status = attempt(o, type, material, more, sections);
+    for (size_t i = 0; status != AB_OK && ab_report_text(o->report, i); i++) print_error("%s\n", ab_report_text(o->report, i));
+    assert_int_equal(status, AB_OK);
     return o;
 }
 
+static one *create(const char *type, const char *material, const char *more) { return create_with(type, material, more, ""); }
+
 static void destroy(one *o) {
-    o->domain->ops->destroy(o->domain);
+    if (o->domain) o->domain->ops->destroy(o->domain);
     ab_scene_destroy(o->scene);
     ab_registry_destroy(o->registry);
     ab_report_destroy(o->report);
@@ -233,6 +240,63 @@ static void test_an_inverted_element_is_named(void **state) {
     destroy(o);
 }
 
+static void says(const one *o, const char *text) {
+    bool found = false;
+    for (size_t i = 0; ab_report_text(o->report, i); i++) found = found || strstr(ab_report_text(o->report, i), text);
+    for (size_t i = 0; !found && ab_report_text(o->report, i); i++) print_error("not '%s': %s\n", text, ab_report_text(o->report, i));
+    assert_true(found);
+}
+
+/* A formula without a value: named at the start, at its line, and in the step where it loses it; dt is not to blame. */
+static void test_formulas_without_a_value_are_named(void **state) {
+    (void)state;
+    static const struct {
+        const char *more, *sections, *text;
+        bool start;
+    } wrong[] = {
+        {", velocity: [1/(x-3), 0]", "", "error: bodies.b.velocity[0] is inf at t = 0 s at (3, 0.5) m, which is no finite number", true},
+        {", fix: [{where: {side: left}, velocity: [0, 1/t]}]", "", "error: bodies.b.fix[0].velocity[1] is inf at t = 0 s, which", true},
+        {", fix: [{where: {side: left}, velocity: [0, sqrt(0.0012-t)]}]", "", "bodies.b.fix[0].velocity[1] is ", false},
+        {"", "loads: [{body: b, where: {side: right}, traction: [sqrt(0.0012-t), 0]}]\n", "loads[0].traction[0] is ", false},
+        {"", "loads: [{body: b, where: {side: right}, traction: [0, x*sqrt(0.0012-t)]}]\n", "loads[0].traction[1] is ", false},
+        {"", "loads: [{body: b, where: {side: right}, pressure: sqrt(0.0012-t)}]\n", "loads[0].pressure is ", false},
+        {"", "loads: [{body: b, at: [3, 0.5], force: [0, sqrt(0.0012-t)]}]\n", "loads[0].force[1] is ", false},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        one *o = wrong[k].start ? calloc(1, sizeof *o) : create_with("q4", ELASTIC, wrong[k].more, wrong[k].sections);
+        if (wrong[k].start) {
+            assert_int_equal(attempt(o, "q4", ELASTIC, wrong[k].more, wrong[k].sections), AB_BAD_INPUT);
+        } else {
+            assert_int_equal(step(o), AB_OK);
+            assert_int_equal(step(o), AB_FAILED);
+            says(o, "nan at t = 0.0015 s");
+        }
+        says(o, wrong[k].text);
+        destroy(o);
+    }
+}
+
+static void test_doubtful_places_are_warned_of(void **state) {
+    (void)state;
+    one *o = create_with("q4", ELASTIC, "", "loads: [{body: b, at: [50, 50], force: [0, 1]}, {body: b, at: [1.4, 1.1], force: [0, 1]}]\n");
+    says(o,
+         ":10:9: warning: loads[0].at: (50, 50) m is 67.18 m from the nearest node of 'b', more than the size of an element; the force acts "
+         "on that node, at (2.5, 2.5) m");
+    assert_int_equal(ab_report_warnings(o->report), 1);
+    destroy(o);
+    o = create("q4", ELASTIC,
+               ", fix: [{where: {side: left}, velocity: [0, 0]},\n   {where: {side: bottom}, velocity: [1, t]}, {where: {side: top}, "
+               "velocity: [0, null]}]");
+    says(o, ":8:");
+    says(
+        o,
+        "warning: bodies.b.fix[1] gives 1 node another velocity along x than fix[0] (line 7), the first at (0, 0) m; the last entry holds, "
+        "fix[1]");
+    assert_int_equal(ab_report_warnings(o->report), 1); /* the third says what the first does */
+    assert_true(o->body->velocity[0] == 1);
+    destroy(o);
+}
+
 /* Pressed flat by a quarter: the critical step is another one, and the one found anew. */
 static void test_the_critical_step_follows_the_shape(void **state) {
     (void)state;
@@ -257,6 +321,8 @@ int main(void) {
         cmocka_unit_test(test_contact_sees_free_dofs_only_between_trial_and_finish),
         cmocka_unit_test(test_uniform_strain_gives_uniform_fields),
         cmocka_unit_test(test_an_inverted_element_is_named),
+        cmocka_unit_test(test_formulas_without_a_value_are_named),
+        cmocka_unit_test(test_doubtful_places_are_warned_of),
         cmocka_unit_test(test_the_critical_step_follows_the_shape),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
