@@ -269,6 +269,7 @@ ab_status ab_number_finite(const ab_number *number, double value, double t, cons
     va_end(arguments);
     if (place != NULL) snprintf(where, sizeof where, " at (%.6g, %.6g) m", place[0], place[1]);
     static const char remedy[] = "which is no finite number; write a formula that has a value there, if need be with (condition ? a : b)";
-    if (t > 0.0) return ab_report_failure(report, "%s is %g at t = %.9g s%s, %s", formula, value, t, where, remedy);
-    return ab_report_error(report, number->mark, "%s is %g at t = 0 s%s, %s", formula, value, where, remedy);
+    const char *shown = isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf"; /* a library may write -nan */
+    if (t > 0.0) return ab_report_failure(report, "%s is %s at t = %.9g s%s, %s", formula, shown, t, where, remedy);
+    return ab_report_error(report, number->mark, "%s is %s at t = 0 s%s, %s", formula, shown, where, remedy);
 }

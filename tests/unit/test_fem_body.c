@@ -269,7 +269,7 @@ static void test_formulas_without_a_value_are_named(void **state) {
         } else {
             assert_int_equal(step(o), AB_OK);
             assert_int_equal(step(o), AB_FAILED);
-            says(o, "nan at t = 0.0015 s");
+            says(o, " is nan at t = 0.0015 s");
         }
         says(o, wrong[k].text);
         destroy(o);

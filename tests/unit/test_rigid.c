@@ -465,9 +465,9 @@ static void test_formulas_without_a_value_are_named(void **state) {
         if (status == AB_OK) status = o.domain->ops->trial(o.domain, &o.step, o.report);
         assert_int_equal(status, AB_FAILED);
         const char *said = ab_report_text(o.report, 0);
-        if (!strstr(said, wrong[k].later) || !strstr(said, "nan at t = 0.0015 s")) say_all(&o);
+        if (!strstr(said, wrong[k].later) || !strstr(said, " is nan at t = 0.0015 s")) say_all(&o);
         assert_non_null(strstr(said, wrong[k].later));
-        assert_non_null(strstr(said, "nan at t = 0.0015 s"));
+        assert_non_null(strstr(said, " is nan at t = 0.0015 s"));
         clear(&o);
     }
 }
