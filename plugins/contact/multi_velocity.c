@@ -256,17 +256,9 @@ static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, con
     n[1] = sin(angle);
 }
 
-/* True where the material of both bodies is further apart along n than along any direction beside it. */
-static int is_closest(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
-    static const double BESIDE = 1e-6; /* rad */
-    const double angle = atan2(n[1], n[0]), here = look_along(a, b, i, angle).distance;
-    return look_along(a, b, i, angle - BESIDE).distance <= here && look_along(a, b, i, angle + BESIDE).distance <= here;
-}
-
-/* The average of both normals, where they agree and the material has its largest distance along it (two gradients that lean may agree by chance). Else one of
- * them is no normal: an edge, a body that only just reaches the node, the far surface of a body one cell thin. There the gradient of the share of mass,
- * m_b grad m_a - m_a grad m_b, begins (what both have in common, as the sides of two flush bars or a wall beside them, cancels in it), and in two dimensions
- * the direction of closest approach ends, from that guess or either normal. */
+/* The average of both normals. Where they disagree one of them is no normal: an edge, a body that only just reaches the node, the far surface of a body
+ * one cell thin. There the gradient of the share of mass, m_b grad m_a - m_a grad m_b, begins (what both have in common, as the sides of two flush
+ * bars or a wall beside them, cancels in it), and in two dimensions the direction of closest approach ends, from that guess or either normal. */
 static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3],
                            double n[3]) {
     const uint32_t d = a->dimension;
@@ -275,7 +267,7 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
         cosine -= na[c] * nb[c];
         n[c] = na[c] - nb[c];
     }
-    if (cosine >= mv->corner_cosine && (d != 2 || is_closest(a, b, i, n))) return;
+    if (cosine >= mv->corner_cosine) return;
     for (uint32_t c = 0; c < d; ++c) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
     const double guess[3][2] = {{n[0], n[1]}, {na[0], na[1]}, {-nb[0], -nb[1]}};
     if (d == 2) closest_approach(a, b, i, guess, n);
