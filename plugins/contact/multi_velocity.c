@@ -222,17 +222,11 @@ static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, doub
  * of both ends meet, until the distance there is what they promise. On a face it is the face's normal to rounding, also where the other body shows only an
  * edge or a single point. */
 static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], double n[3]) {
-    static const double FIRST_STEP = 0.02, ROUNDING = 1e-13, PI = 3.141592653589793, DEEP = 1e-3; /* of a cell */
-    enum { MOST = 60, DIRECTIONS = 24 };
+    static const double FIRST_STEP = 0.02, ROUNDING = 1e-13, PI = 3.141592653589793;
+    enum { MOST = 60 };
     clearance low = {.distance = -INFINITY}, high;
     for (int k = 0; k < 3; ++k) {
         const clearance seen = look_along(a, b, i, atan2(guess[k][1], guess[k][0]));
-        if (seen.distance > low.distance) low = seen;
-    }
-    /* Of bodies that are apart the distance has one maximum. Where they seem to overlap there may be others, as at a corner that faces along the other body:
-     * then every direction is asked. */
-    for (int k = 0; k < DIRECTIONS && low.distance < -DEEP * a->cell; ++k) {
-        const clearance seen = look_along(a, b, i, 2.0 * PI * k / DIRECTIONS);
         if (seen.distance > low.distance) low = seen;
     }
     high = low;
