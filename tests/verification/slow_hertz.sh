@@ -1,10 +1,10 @@
 #!/bin/bash
 # cost: 25
-# The cylinder on the plane with other elements, responses, sizes and materials; and the scene must miss where the plane holds the surface, too. test_hertz.sh BUILD
+# The cylinder on the plane with other elements, responses, sizes and materials; and the scene must miss where the plane holds the surface, too. slow_hertz.sh BUILD
 set -u
 build=${1:?the build folder}
 scratch=${ABUT_SCRATCH:-$(mktemp -d)}
-scene=tests/verification/hertz.yaml
+scene=tests/verification/hertz.slow.yaml
 count=0 missed=0
 run() { # settings of --set: exit status of the run
     local set=()
