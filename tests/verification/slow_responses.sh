@@ -2,7 +2,7 @@
 # cost: 30
 # Each algorithm with each response and each pair of methods: two blocks turned by 30 degrees fly at each other obliquely and part. Whatever the pair, linear
 # momentum is kept to rounding, contact and friction take energy and give none, and what the response promises of normal and tangential motion comes out; then
-# impact.yaml by penalty and distance-power. test_responses.sh BUILD
+# impact.yaml by penalty and distance-power. slow_responses.sh BUILD
 set -eu
 build=${1:?the build folder}
 scratch=${ABUT_SCRATCH:-$(mktemp -d)}
