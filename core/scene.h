@@ -76,6 +76,8 @@ typedef struct ab_motion_spec { /* of a rigid body; what is not given follows fr
     double mass, inertia;        /* kg, kg m2 (per m of thickness) */
 } ab_motion_spec;
 
+typedef enum ab_transfer { AB_TRANSFER_FLIP = 0, AB_TRANSFER_APIC, AB_TRANSFER_TPIC } ab_transfer;
+
 typedef struct ab_body_spec {
     char *name;
     ab_mark mark;
@@ -84,9 +86,10 @@ typedef struct ab_body_spec {
     ab_shape_spec shape;
     ab_fill_rule fill;
     int per_cell;
-    char *basis;           /* "linear" | "gimp" */
-    bool contiguous;       /* domains of gimp follow the stretch */
-    double flip;           /* transfer: 1 flip, 0 pic */
+    char *basis;     /* "linear" | "gimp" */
+    bool contiguous; /* domains of gimp follow the stretch */
+    ab_transfer transfer;
+    double flip;           /* AB_TRANSFER_FLIP: 1 flip, 0 pic */
     char *update;          /* "usf" | "usl" | "musl" */
     ab_number velocity[2]; /* formulas of x, y */
     bool gravity;

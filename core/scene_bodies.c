@@ -52,7 +52,10 @@ static void take_transfer(ab_scene_reader *r, const ab_node *node, const char *w
     body->flip = 1;
     if (node == NULL || node->kind != AB_NODE_MAP) {
         char *word = NULL;
-        if (ab_read_word(&r->base, &ab_section_body.keys[BODY_TRANSFER], node, where, &word)) body->flip = strcmp(word, "pic") == 0 ? 0 : 1;
+        if (!ab_read_word(&r->base, &ab_section_body.keys[BODY_TRANSFER], node, where, &word)) return;
+        if (strcmp(word, "apic") == 0) body->transfer = AB_TRANSFER_APIC;
+        if (strcmp(word, "tpic") == 0) body->transfer = AB_TRANSFER_TPIC;
+        body->flip = strcmp(word, "flip") == 0 ? 1 : 0;
         return;
     }
     const ab_node *v[TRANSFER_KEYS];

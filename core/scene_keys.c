@@ -100,7 +100,7 @@ static const ab_key body[] = {
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
     [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|!bspline2|!bspline3", .initial = "gimp",
                     .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
-    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|!apic|!tpic|!xpic", .initial = "flip",
+    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic|!xpic", .initial = "flip",
                        .help = "how velocities come back; a blend is {flip: 0.99}"},
     [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",
                      .help = "when stress is updated: first, last, last from mapped-back velocities"},

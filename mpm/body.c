@@ -50,7 +50,7 @@ static double critical_dt(ab_domain *domain, const char **limit) {
 static void scatter_all(mpm_body *body) {
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0) body->kernel->scatter(body, k);
+        if (body->tiles[k].patch >= 0) body->kernel->scatter[body->rows.affine >= 0](body, k);
 }
 
 static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report) {
@@ -80,7 +80,7 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
         if (body->tiles[k].patch < 0) continue;
         const int culprit = body->kernel->stress(body, k, step, advance, body->sums + k);
         if (culprit >= 0) failed = 1, first = culprit < first ? culprit : first;
-        if (fuse) body->kernel->scatter(body, k);
+        if (fuse) body->kernel->scatter[body->rows.affine >= 0](body, k);
     }
     if (failed) {
         const double *x = mpm_block(body, (size_t)first);
@@ -135,7 +135,8 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
                                      "hold that side (roller, fixed) or say 'outflow' there",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0],
                                      x[1] + body->origin[1], v[0], v[1], step->time + step->dt, step->number);
-        const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1]);
+        double spin = 0.0;
+        const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1] + mpm_affine_inner(body, slot, &spin));
         body->energy.outflow += carried;
         body->energy.kinetic -= carried; /* which this step's sum holds still */
         body->sort_due = true;
@@ -195,7 +196,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     if (!remap) mpm_loads_work(body, step);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0) body->kernel->finish(body, k, step, remap, body->sums + k);
+        if (body->tiles[k].patch >= 0) body->kernel->finish[body->finish](body, k, step, remap, body->sums + k);
     AB_TRY(mpm_outline_move(body, step, report));
     AB_TRY(close_step(body, step, report));
     if (body->update == MPM_USL) mpm_grid_limit_light(body);
@@ -284,9 +285,9 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
                body->patch_capacity * 8 * PATCH_DOUBLES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
-    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s",
+    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
-             body->rows.gradient >= 0 ? ", deformation gradient" : "");
+             body->rows.gradient >= 0 ? ", deformation gradient" : "", body->rows.affine >= 0 ? ", affine velocity" : "");
     const ab_class *class_ = &body->material->loaded->class_;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         const size_t used = strlen(p->fields);
@@ -316,11 +317,12 @@ static void measure(mpm_body *body) {
         const double *p = mpm_block(body, slot / 8) + slot % 8;
         const double m = p[8 * ROW_MASS], x = p[8 * ROW_X] + body->origin[0], y = p[8 * (ROW_X + 1)] + body->origin[1], vx = p[8 * ROW_V],
                      vy = p[8 * (ROW_V + 1)];
-        body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy);
+        double spin = 0.0;
+        body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy + mpm_affine_inner(body, slot, &spin));
         body->motion.mass += m;
         body->motion.momentum[0] += m * vx;
         body->motion.momentum[1] += m * vy;
-        body->motion.angular_momentum[2] += m * (x * vy - y * vx);
+        body->motion.angular_momentum[2] += m * (x * vy - y * vx + spin);
         body->motion.centre[0] += m * x;
         body->motion.centre[1] += m * y;
         body->largest_speed = fmax(body->largest_speed, sqrt(vx * vx + vy * vy));
@@ -352,6 +354,8 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
                                .index = index};
     body->scene = scene;
     body->flip = spec->flip;
+    body->finish = spec->transfer == AB_TRANSFER_APIC || spec->transfer == AB_TRANSFER_TPIC ? MPM_FINISH_AFFINE : MPM_FINISH_BLEND;
+    body->moment = spec->transfer == AB_TRANSFER_APIC && body->kernel->nodes == 3;
     body->contiguous = spec->contiguous;
     body->gravity = spec->gravity;
     body->threads = threads;
@@ -366,6 +370,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     ab_fill *fill = NULL;
     ab_status status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
+    if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
     if (status == AB_OK) status = mpm_material_start(body, report);

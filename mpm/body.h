@@ -31,6 +31,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int half;             /* 2: half sizes of the point's domain, m (gimp) */
     int inverse_half;     /* 2: their inverses */
     int gradient;         /* 4: deformation gradient xx, xy, yx, yy */
+    int affine;           /* 4: of the velocity about the point, xx, xy, yx, yy (apic, tpic): see transfer.inc */
     int state, states;    /* the material's */
     bool turns;           /* some state is a vector or a tensor */
 } mpm_rows;
@@ -71,12 +72,16 @@ typedef struct
 
 typedef struct mpm_body mpm_body;
 
+/* Ways to bring velocities back to the points, each a pass of its own. */
+enum { MPM_FINISH_BLEND, MPM_FINISH_AFFINE, MPM_FINISH_WAYS };
+
 typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
     const char *basis;
     int nodes; /* per direction */
     void (*weights)(const mpm_body *, const mpm_tile *, const double *block, mpm_weights *);
-    void (*scatter)(mpm_body *, size_t tile);
-    void (*finish)(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
+    void (*spreads)(const mpm_body *, const mpm_tile *, const double *block, double d[2][8]); /* sum N (x_i - x_p)^2 by direction, m2 */
+    void (*scatter[2])(mpm_body *, size_t tile);                                              /* plain; with the affine part */
+    void (*finish[MPM_FINISH_WAYS])(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
     int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance,
                   mpm_sums *); /* -1, or the block near which the material gave up */
 } mpm_kernel;
@@ -90,6 +95,8 @@ struct mpm_body {
     const mpm_kernel *kernel;
     mpm_update update;
     double flip;
+    int finish;  /* MPM_FINISH_* */
+    bool moment; /* rows.affine holds B, not C: see transfer.inc */
     bool contiguous, gravity;
     int threads;
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
@@ -157,6 +164,11 @@ static inline double *mpm_block(const mpm_body *body, size_t block) { return bod
 
 /* material.c */
 ab_status mpm_material_start(mpm_body *, ab_report *); /* the material's instance; stress and states of the points at the start */
+
+/* transfer.c: what apic and tpic keep of a point besides its velocity */
+void mpm_affine_start(mpm_body *, const ab_fill *); /* the slope of the velocity drawn */
+/* Of the point in a slot, at rows.x: twice the kinetic energy of its affine part, tr(C D C^T) (0 without one), and its angular momentum, per kg. */
+double mpm_affine_inner(const mpm_body *, size_t slot, double *spin);
 
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,

@@ -119,7 +119,7 @@ static const mistake mistakes[] = {
     {"{rule: gauss, per_cell: 9}", "{per_cell: 0}", "per_cell is 0 but must be at least 1"},
     {"    method: material-points", "    method: finite-element", "unknown word 'finite-element'; did you mean 'finite-elements'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    basis: bspline2", "'bspline2' is not in this version yet; there is: linear, gimp"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: apic", "'apic' is not in this version yet; there is: flip, pic"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: apik", "unknown word 'apik'; did you mean 'apic'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 2}", "transfer.xpic is not in this version yet"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {flip: 1.1}", "flip is 1.1 but must be at least 0 and at most 1"},
     {"    fill: {rule: gauss, per_cell: 9}", "    mesh: {}", "bodies.block.mesh belongs to method finite-elements and rigid; leave it out of a body of method material-points"},

@@ -1,0 +1,57 @@
+/* transfer.c: what apic and tpic keep of a point besides its velocity, outside of the passes over points (transfer.inc): how it starts, its energy and spin. */
+#include <math.h>
+
+#include "mpm/body.h"
+
+/* Slope of a start velocity along one direction across the point's own domain, 1/s. So a linear field has its slope to rounding, a jump is spread over the point
+ * it lies in, and nothing is asked far outside of the body, where a formula may have no value; where it has none on one side, the other side serves. */
+static double slope_of(const ab_number *velocity, const double place[2], int direction, double half) {
+    if (ab_number_is_constant(velocity)) return 0.0;
+    double at[3][2], v[3];
+    for (int k = 0; k < 3; ++k) {
+        at[k][0] = place[0], at[k][1] = place[1];
+        at[k][direction] += (k - 1) * half;
+        v[k] = ab_number_at(velocity, 0.0, at[k][0], at[k][1], 0.0);
+    }
+    const double before = at[1][direction] - at[0][direction], behind = at[2][direction] - at[1][direction];
+    if (isfinite(v[0]) && isfinite(v[2])) return (v[2] - v[0]) / (before + behind);
+    if (isfinite(v[2])) return (v[2] - v[1]) / behind;
+    return isfinite(v[0]) ? (v[1] - v[0]) / before : 0.0;
+}
+
+void mpm_affine_start(mpm_body *body, const ab_fill *fill) {
+    if (body->rows.affine < 0) return;
+    const ab_body_spec *spec = body->domain.spec;
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        const mpm_tile *tile = body->tiles + k;
+        for (uint32_t b = tile->first; tile->patch >= 0 && b < tile->first + tile->blocks; ++b) {
+            double *block = mpm_block(body, b), d[2][8];
+            body->kernel->spreads(body, tile, block, d);
+            for (size_t l = 0; l < 8; ++l) {
+                const uint64_t id = body->ids[b * 8 + l];
+                if (id == UINT64_MAX) continue; /* a massless copy: zeros will do */
+                const double place[2] = {fill->x[id], fill->y[id]};
+                for (int c = 0; c < 4; ++c) {
+                    const int along = c % 2;
+                    const double slope = slope_of(spec->velocity + c / 2, place, along, sqrt(fill->extent[3 * id + (size_t)along]));
+                    block[8 * (body->rows.affine + c) + (int)l] = body->moment ? slope * d[along][l] : slope;
+                }
+            }
+        }
+    }
+}
+
+double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin) {
+    *spin = 0.0;
+    if (body->rows.affine < 0) return 0.0;
+    const double *block = mpm_block(body, slot / 8), *kept = block + 8 * body->rows.affine + slot % 8;
+    double d[2][8], b[4], inner = 0.0;
+    body->kernel->spreads(body, body->tiles + mpm_tile_of_block(body, (uint32_t)(slot / 8)), block, d);
+    for (int c = 0; c < 4; ++c) {
+        const double spread = d[c % 2][slot % 8], value = kept[8 * c];
+        b[c] = body->moment ? value : value * spread;
+        inner += b[c] * (body->moment ? value / spread : value);
+    }
+    *spin = b[2] - b[1];
+    return inner;
+}
