@@ -218,36 +218,72 @@ static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, doub
     return seen;
 }
 
-/* The direction of closest approach, out of a, from the best of three guesses (cosine and sine each): uphill until the slope turns, then to where the tangents
- * of both ends meet, until the distance there is what they promise. On a face it is the face's normal to rounding, also where the other body shows only an
- * edge or a single point. */
-static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], double n[3]) {
+/* The largest distance near a direction: uphill until the slope turns, then to where the tangents of both ends meet, until the distance there is what they
+ * promise. */
+static clearance climb(const ab_trace *a, const ab_trace *b, size_t i, clearance from) {
     static const double FIRST_STEP = 0.02, ROUNDING = 1e-13, PI = 3.141592653589793;
     enum { MOST = 60 };
-    clearance low = {.distance = -INFINITY}, high;
+    clearance low = from, high = from, best;
+    for (double step = FIRST_STEP; low.slope < 0.0 && from.angle - low.angle < PI; step *= 2.0)
+        high = low, low = look_along(a, b, i, low.angle - step);
+    for (double step = FIRST_STEP; high.slope > 0.0 && high.angle - from.angle < PI; step *= 2.0)
+        low = high, high = look_along(a, b, i, high.angle + step);
+    best = low.distance >= high.distance ? low : high;
+    for (int k = 0; k < MOST && low.slope > 0.0 && high.slope < 0.0; ++k) {
+        double angle = (high.distance - high.slope * high.angle - low.distance + low.slope * low.angle) / (low.slope - high.slope);
+        if (!(angle > low.angle && angle < high.angle)) angle = 0.5 * (low.angle + high.angle);
+        best = look_along(a, b, i, angle);
+        if (low.distance + low.slope * (angle - low.angle) - best.distance <= ROUNDING * a->cell) break;
+        if (best.slope > 0.0)
+            low = best;
+        else
+            high = best;
+    }
+    return best;
+}
+
+static const double TOUCH = 0.01; /* of a cell */
+
+/* The direction of closest approach, out of a, from the best of three guesses (cosine and sine each). On a face it is the face's normal to rounding, also where
+ * the other body shows only an edge or a single point. Of bodies that are apart the distance has one maximum over all directions; below zero there may be
+ * others, as at a corner that faces along the other body. So where they seem to overlap every direction is asked whether they are apart, or all but touch. */
+static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], double n[3]) {
+    static const double PI = 3.141592653589793;
+    enum { DIRECTIONS = 24 };
+    clearance begin = {.distance = -INFINITY};
     for (int k = 0; k < 3; ++k) {
         const clearance seen = look_along(a, b, i, atan2(guess[k][1], guess[k][0]));
-        if (seen.distance > low.distance) low = seen;
+        if (seen.distance > begin.distance) begin = seen;
     }
-    high = low;
-    const double begin = low.angle;
-    for (double step = FIRST_STEP; low.slope < 0.0 && begin - low.angle < PI; step *= 2.0)
-        high = low, low = look_along(a, b, i, low.angle - step);
-    for (double step = FIRST_STEP; high.slope > 0.0 && high.angle - begin < PI; step *= 2.0)
-        low = high, high = look_along(a, b, i, high.angle + step);
-    double angle = low.distance >= high.distance ? low.angle : high.angle;
-    for (int k = 0; k < MOST && low.slope > 0.0 && high.slope < 0.0; ++k) {
-        angle = (high.distance - high.slope * high.angle - low.distance + low.slope * low.angle) / (low.slope - high.slope);
-        if (!(angle > low.angle && angle < high.angle)) angle = 0.5 * (low.angle + high.angle);
-        const clearance middle = look_along(a, b, i, angle);
-        if (low.distance + low.slope * (angle - low.angle) - middle.distance <= ROUNDING * a->cell) break;
-        if (middle.slope > 0.0)
-            low = middle;
-        else
-            high = middle;
+    clearance found = climb(a, b, i, begin);
+    if (found.distance < 0.0) {
+        begin = found;
+        for (int k = 0; k < DIRECTIONS; ++k) {
+            const clearance seen = look_along(a, b, i, 2.0 * PI * k / DIRECTIONS);
+            if (seen.distance > begin.distance) begin = seen;
+        }
+        if (begin.angle != found.angle) {
+            const clearance other = climb(a, b, i, begin);
+            if (other.distance > -TOUCH * a->cell) found = other;
+        }
     }
-    n[0] = cos(angle);
-    n[1] = sin(angle);
+    n[0] = cos(found.angle);
+    n[1] = sin(found.angle);
+}
+
+/* Two gradients that lean may agree by chance, and the distance along them is then short by a thousandth of a cell. So where the bodies are apart, or all but touch,
+ * and are clearly further apart along another direction near n, n becomes that one. */
+static void mend_chance(const ab_trace *a, const ab_trace *b, size_t i, double n[3]) {
+    static const double BESIDE = 1e-6 /* rad */, CLEARLY = 1e-4 /* of a cell */;
+    const double angle = atan2(n[1], n[0]);
+    const clearance here = look_along(a, b, i, angle);
+    if (here.distance < -TOUCH * a->cell ||
+        (look_along(a, b, i, angle - BESIDE).distance <= here.distance && look_along(a, b, i, angle + BESIDE).distance <= here.distance))
+        return;
+    const clearance top = climb(a, b, i, here);
+    if (!(top.distance > here.distance + CLEARLY * a->cell)) return;
+    n[0] = cos(top.angle);
+    n[1] = sin(top.angle);
 }
 
 /* The average of both normals. Where they disagree one of them is no normal: an edge, a body that only just reaches the node, the far surface of a body
@@ -261,7 +297,10 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
         cosine -= na[c] * nb[c];
         n[c] = na[c] - nb[c];
     }
-    if (cosine >= mv->corner_cosine) return;
+    if (cosine >= mv->corner_cosine) {
+        if (d == 2) mend_chance(a, b, i, n);
+        return;
+    }
     for (uint32_t c = 0; c < d; ++c) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
     const double guess[3][2] = {{n[0], n[1]}, {na[0], na[1]}, {-nb[0], -nb[1]}};
     if (d == 2) closest_approach(a, b, i, guess, n);

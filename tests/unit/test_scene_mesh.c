@@ -447,8 +447,8 @@ static void test_values_of_another_kind_are_answered(void **state) {
         "\"\"",
         "[1e-300, 1e-300]",
         "{patch: {bottom: {arc: {from: [1e300, 0], to: [0, 1e300], center: [0, 0]}}, right: [[0, 0], [0, 0]], top: 1, left: {arc: 1}}}",
-        "{patch: {bottom: {arc: {from: [1e-300, 0], to: [0, 1e-300], center: [0, 0]}}, right: [[0, 1e-300], [0, 1]], top: [[0, 0], [0, "
-        "1]], left: [[1e-300, 0], [0, 0]]}, elements: [1, 1]}"};
+        ("{patch: {bottom: {arc: {from: [1e-300, 0], to: [0, 1e-300], center: [0, 0]}}, right: [[0, 1e-300], [0, 1]], top: [[0, 0], [0, "
+         "1]], left: [[1e-300, 0], [0, 0]]},elements: [1, 1]}")};
     for (size_t p = 0; p < sizeof paths / sizeof paths[0]; p++)
         for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
             /* no units, so that their database need not be read */
