@@ -14,16 +14,23 @@ typedef struct contact_all {
     contact_pair *pairs;
     size_t count;
     ab_contact_totals *totals;
-    double *friction, *contact; /* per body */
-    long found_step;            /* step whose points are at hand; -1: none */
-    long answered_step;         /* step whose dynamic stage is done */
-    double critical_dt;         /* s, of the springs in the last dynamic stage; INFINITY: none */
-    char limit[256];            /* which spring that is */
+    double *friction, *contact;         /* per body */
+    long found_step;                    /* step whose points are at hand; -1: none */
+    long answered_step;                 /* step whose dynamic stage is done */
+    double critical_dt;                 /* s, of the springs in the last dynamic stage; INFINITY: none */
+    const contact_pair *limit_pair;     /* whose spring that is */
+    double limit_stiffness, limit_mass; /* N/m, kg */
+    char limit[256];                    /* the same in words */
 } contact_all;
+
+const double *contact_history(const contact_pair *pair, bool answered) {
+    const ab_points *p = &pair->points.view;
+    return (answered ? p->state1 : p->state0) + (pair->points.states - HISTORY) * p->ld;
+}
 
 /* How the dynamic stage has left each point. */
 static void note_history(contact_pair *pair, double dt) {
-    static const double STUCK = 1e-9; /* slip that an impulse this many times its own size would end */
+    static const double NOTHING = 1e-12; /* of an impulse: less across the normal is rounding */
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
     contact_side side[2];
@@ -33,25 +40,40 @@ static void note_history(contact_pair *pair, double dt) {
         double v[2];
         contact_relative_velocity(side, false, i, v);
         const double nx = p->normal[i], ny = p->normal[ld + i], jx = p->impulse[i], jy = p->impulse[ld + i];
-        const double jt = jy * nx - jx * ny, vt = v[1] * nx - v[0] * ny;
-        const bool pushed = jx != 0.0 || jy != 0.0, stuck = jt != 0.0 && fabs(vt) * p->tangential_mass[i] <= STUCK * fabs(jt);
-        history[HISTORY_STATUS * ld + i] = !pushed ? STATUS_FREE : stuck ? STATUS_STICKS : STATUS_SLIPS;
+        const double jn = jx * nx + jy * ny, jt = jy * nx - jx * ny;
+        history[HISTORY_STATUS * ld + i] = jx == 0.0 && jy == 0.0          ? STATUS_FREE
+                                           : fabs(jt) > NOTHING * fabs(jn) ? STATUS_BOTH
+                                                                           : STATUS_NORMAL;
         history[HISTORY_NORMAL * ld + i] = v[0] * nx + v[1] * ny;
-        history[HISTORY_TANGENTIAL * ld + i] = vt;
-        history[HISTORY_FORCE * ld + i] = (jx * nx + jy * ny) / dt;
+        history[HISTORY_TANGENTIAL * ld + i] = v[1] * nx - v[0] * ny;
+        history[HISTORY_FORCE * ld + i] = jn / dt;
         history[HISTORY_FRICTION * ld + i] = jt / dt;
     }
 }
 
-/* Points from surfaces begin with the forces of the last step. Where more of them push than there are freedoms (the two passes say much the same twice) rounds that
- * begin at nothing would share a force out between them by their order alone, whatever the gaps are; so what one step leaves undone the next goes on with. */
-static void begin_with_last_forces(contact_pair *pair, const contact_side side[2], double dt) {
+/* What the kinematic stage needed at each point. */
+static void note_strain(contact_pair *pair, double dt) {
+    const ab_points *p = &pair->points.view;
+    const size_t ld = p->ld;
+    double *history = p->state1 + (pair->points.states - HISTORY) * ld;
+    for (size_t i = 0; i < p->count; ++i) {
+        const double nx = p->normal[i], ny = p->normal[ld + i], jx = p->impulse[i], jy = p->impulse[ld + i];
+        history[HISTORY_STRAIN * ld + i] = (jx * nx + jy * ny) / dt;
+        history[HISTORY_SHEAR * ld + i] = (jy * nx - jx * ny) / dt;
+    }
+}
+
+/* Points from surfaces begin with the forces of the last step, each stage with its own. Where more of them push than there are freedoms (the two passes say much the
+ * same twice) rounds that begin at nothing would share a force out between them by their order alone, whatever the gaps are; so what one step leaves undone the next
+ * goes on with. row: HISTORY_*, of the force along the normal. status: of the points, which push along no other direction; NULL: any. */
+static void begin_with_last_forces(contact_pair *pair, const contact_side side[2], double dt, size_t row, const double *status) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     const size_t ld = p->ld;
-    const double *history = p->state0 + (points->states - HISTORY) * ld;
+    const double *force = p->state0 + (points->states - HISTORY + row) * ld;
     for (size_t i = 0; i < p->count; ++i) {
-        const double jn = dt * history[HISTORY_FORCE * ld + i], jt = dt * history[HISTORY_FRICTION * ld + i];
+        const double jn = status && status[i] == STATUS_FREE ? 0.0 : dt * force[i],
+                     jt = status && status[i] != STATUS_BOTH ? 0.0 : dt * force[ld + i];
         if (jn == 0.0 && jt == 0.0) continue;
         const double nx = p->normal[i], ny = p->normal[ld + i], j[2] = {jn * nx - jt * ny, jn * ny + jt * nx};
         for (size_t c = 0; c < 2; ++c) p->impulse[c * ld + i] = points->applied[c * ld + i] = j[c];
@@ -60,7 +82,7 @@ static void begin_with_last_forces(contact_pair *pair, const contact_side side[2
 }
 
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
-static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage, ab_report *report) {
+static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage, bool answered, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     contact_side side[2];
@@ -77,7 +99,11 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
         points->relative_old[i] = v[0];
         points->relative_old[p->ld + i] = v[1];
     }
-    if (points->surfaces && stage == AB_STAGE_DYNAMIC) begin_with_last_forces(pair, side, step->dt);
+    if (!points->surfaces) return AB_OK;
+    if (stage == AB_STAGE_DYNAMIC)
+        begin_with_last_forces(pair, side, step->dt, HISTORY_FORCE, NULL);
+    else
+        begin_with_last_forces(pair, side, step->dt, HISTORY_STRAIN, contact_history(pair, answered) + HISTORY_STATUS * p->ld);
     return AB_OK;
 }
 
@@ -135,33 +161,42 @@ static void note_springs(contact_all *all) {
             const double dt = 2.0 * sqrt(p->normal_mass[i] / p->stiffness[i]);
             if (!(dt < all->critical_dt)) continue;
             all->critical_dt = dt;
-            snprintf(all->limit, sizeof all->limit, "spring of contact between '%.80s' and '%.80s', %.3g N/m on %.3g kg",
-                     pair->a->spec->name, pair->b->spec->name, p->stiffness[i], p->normal_mass[i]);
+            all->limit_pair = pair;
+            all->limit_stiffness = p->stiffness[i];
+            all->limit_mass = p->normal_mass[i];
         }
     }
 }
 
 static double critical_dt(const ab_interaction *face, const char **limit) {
-    const contact_all *all = (const contact_all *)face;
+    contact_all *all = (contact_all *)(uintptr_t)face; /* only the words are written */
+    if (all->critical_dt < INFINITY)
+        snprintf(all->limit, sizeof all->limit, "spring of contact between '%.80s' and '%.80s', %.3g N/m on %.3g kg",
+                 all->limit_pair->a->spec->name, all->limit_pair->b->spec->name, all->limit_stiffness, all->limit_mass);
     *limit = all->limit;
     return all->critical_dt;
 }
 
 static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report) {
     contact_all *all = (contact_all *)face;
+    const bool answered = all->answered_step == step->number;
     if (all->found_step != step->number) {
         for (size_t k = 0; k < all->count; ++k) {
+            if (all->found_step >= 0) contact_points_remember(&all->pairs[k].points);
             AB_TRY(contact_find(all->pairs + k, step, report));
             if (step->number == 0) contact_warn_of_overlap(all->scene, all->pairs + k, report);
         }
         all->found_step = step->number;
     }
     for (size_t k = 0; k < all->count; ++k)
-        if (all->pairs[k].points.view.count) AB_TRY(prepare(all->pairs + k, step, stage, report));
-    AB_TRY(contact_rounds(all->pairs, all->count, stage, all->answered_step == step->number, report));
+        if (all->pairs[k].points.view.count) AB_TRY(prepare(all->pairs + k, step, stage, answered, report));
+    AB_TRY(contact_rounds(all->pairs, all->count, stage, answered, report));
     if (stage == AB_STAGE_DYNAMIC) {
         all->answered_step = step->number;
         note_springs(all);
+    } else {
+        for (size_t k = 0; k < all->count; ++k)
+            if (all->pairs[k].points.view.count) note_strain(all->pairs + k, step->dt);
     }
     return AB_OK;
 }
@@ -171,7 +206,6 @@ static void settle(ab_interaction *face, const ab_step *step) {
     for (size_t k = 0; k < all->count; ++k) {
         book(all, k, step);
         note_history(all->pairs + k, step->dt);
-        contact_points_remember(&all->pairs[k].points);
     }
 }
 

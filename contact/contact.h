@@ -8,10 +8,10 @@
 /* For main: fills the scheduler's table. */
 ab_status contact_create(const ab_scene *, ab_domain **, ab_interaction **, ab_report *);
 
-/* What the loop itself remembers of a point: how it was left by the dynamic stage, with which relative velocity and with which force along and across the
- * normal. */
-enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY_FORCE, HISTORY_FRICTION, HISTORY };
-enum { STATUS_FREE, STATUS_SLIPS, STATUS_STICKS };
+/* What the loop itself remembers of a point: along which directions the dynamic stage pushed, with which relative velocity it left the point and with which force
+ * along and across the normal, and what the kinematic stage needed along and across it. */
+enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY_FORCE, HISTORY_FRICTION, HISTORY_STRAIN, HISTORY_SHEAR, HISTORY };
+enum { STATUS_FREE, STATUS_NORMAL, STATUS_BOTH };
 
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
@@ -92,6 +92,9 @@ ab_status contact_find(contact_pair *, const ab_step *, ab_report *);
 /* Contact keeps bodies from getting deeper into each other and does not push apart what is drawn one inside the other: says so, after the first find. */
 void contact_warn_of_overlap(const ab_scene *, const contact_pair *, ab_report *);
 ab_status contact_complain(const contact_pair *, const ab_service *, const char *what, int code, ab_report *);
+
+/* Rows of HISTORY_*: as the dynamic stage of this step has left the points (answered), or that of the last step. */
+const double *contact_history(const contact_pair *, bool answered);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);

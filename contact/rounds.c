@@ -11,9 +11,11 @@
 #include "contact/contact.h"
 #include "core/vector.h"
 
-enum { MOST_ROUNDS = 400, PATIENCE = 12, PLAIN = 8 }; /* the first rounds are often enough */
-static const double STANDSTILL = 1e-13;               /* change of an impulse against the largest one of the step */
-static const double PROGRESS = 0.8;                   /* PATIENCE rounds must bring the change down to this part of what it was */
+enum { MOST_ROUNDS = 400, PATIENCE = 6, PLAIN = 8 }; /* the first rounds are often enough */
+/* Change of an impulse against the largest one of the stage. The kinematic stage's impulses move nothing: they put right what the remap has made of the velocities
+ * at contact points, and what they leave undone is a part of that. */
+static const double STANDSTILL[] = {[AB_STAGE_DYNAMIC] = 1e-13, [AB_STAGE_KINEMATIC] = 1e-3};
+static const double PROGRESS = 0.9; /* PATIENCE rounds must bring the change down to this part of what it was */
 
 typedef struct progress {
     double change2, largest2,
@@ -21,8 +23,9 @@ typedef struct progress {
 } progress;
 
 /* In the kinematic stage the conditions are equalities: points that pushed in the dynamic stage keep the relative velocity it left them with along the
- * normal, and across it where they stuck. Were it the inequality again, noise that separates would pass and noise that approaches would not, and
- * the difference would pump energy into the strain. `history`: rows of HISTORY_*. */
+ * normal, and across it where they pushed across it, whether they stuck or slipped. So the impulses do the same work on the velocities that strain the bodies as on
+ * those that move them. Else a slip that the remap has made smaller or turned round lets stress that bears the friction store what friction should take; and
+ * with the inequality again noise that separates would pass and noise that approaches would not. Both pump energy into the strain. `history`: rows of HISTORY_*. */
 static void keep_relative_velocity(contact_pair *pair, size_t first, size_t count, const double *history) {
     ab_points *p = &pair->points.view;
     const size_t ld = p->ld;
@@ -34,8 +37,7 @@ static void keep_relative_velocity(contact_pair *pair, size_t first, size_t coun
         }
         const double nx = p->normal[i], ny = p->normal[ld + i], vx = p->relative_velocity[i], vy = p->relative_velocity[ld + i];
         const double jn = p->normal_mass[i] * (vx * nx + vy * ny - history[HISTORY_NORMAL * ld + i]);
-        const double jt =
-            status == STATUS_STICKS ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
+        const double jt = status == STATUS_BOTH ? p->tangential_mass[i] * (vy * nx - vx * ny - history[HISTORY_TANGENTIAL * ld + i]) : 0.0;
         p->impulse[i] += jn * nx - jt * ny;
         p->impulse[ld + i] += jn * ny + jt * nx;
     }
@@ -125,13 +127,12 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
             if (!p->count) continue;
             contact_side side[2];
             contact_sides(pair, side);
-            const double *rows = answered ? p->state1 : p->state0;
-            const double *history = stage == AB_STAGE_KINEMATIC ? rows + (pair->points.states - HISTORY) * p->ld : NULL;
+            const double *history = stage == AB_STAGE_KINEMATIC ? contact_history(pair, answered) : NULL;
             AB_TRY(round_over(pair, side, history, &so_far, report));
         }
         const double change = sqrt(so_far.change2), largest = sqrt(so_far.largest2);
         if (change < PROGRESS * least) least = change, since = 0;
-        if (!again || change <= STANDSTILL * largest || ++since > PATIENCE) break;
+        if (!again || change <= STANDSTILL[stage] * largest || ++since > PATIENCE) break;
         const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;
         square = so_far.square;
         for (size_t k = 0; k < count && round >= PLAIN && round + 1 < MOST_ROUNDS; ++k) {
