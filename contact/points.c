@@ -37,6 +37,7 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
             return false;
         v->state0 = state0;
         v->relative_velocity = relative;
+        v->relative_velocity_old = points->relative_old;
         v->normal_mass = mn;
         v->tangential_mass = mt;
         v->capacity = v->ld = n;

@@ -262,6 +262,8 @@ typedef struct ab_points {
     size_t failures;   /* find adds what it could not decide; the run's summary shows the sum */
     double speed;      /* m/s: with AB_NEED_SURFACE, no place listed on one surface moves faster than this against one of the other */
     double density;    /* kg/m3: of the body that modulus is of; 0 where it has none (rigid) */
+    const double *relative_velocity_old; /* m/s, dimension rows: at the start of the step. The work that an impulse takes from the bodies is the impulse
+                                            times the mean of this and of what relative_velocity ends at */
 } ab_points;
 
 typedef struct ab_contact_ops {

@@ -2,7 +2,10 @@
  * normal a spring that slips at the Coulomb limit.
  *
  * Springs are explicit: their force is that of the places at the start of the step, so it does not change from round to round and needs dt below
- * 2 sqrt(m/k). The viscous part is implicit in the velocity that all impulses of the step leave, and stable for any dt. */
+ * 2 sqrt(m/k). The viscous part is implicit in the velocity that all impulses of the step leave, and stable for any dt.
+ *
+ * A spring gives back at most what it has taken. Where a point begins deep in the other body (a corner reaches a node of the grid that was not shared before, bodies
+ * are drawn overlapping) nothing has loaded its spring: it stops the bodies and throws nothing. So does one whose stiffness grows under its load. */
 #include "abut_plugin.h"
 
 #include <math.h>
@@ -24,7 +27,8 @@ static const ab_param PARAMS[] = {
      "to stay below 2 sqrt(m/k)",
      "mass|modulus", AB_CHOICE, 0, OF_MASS, 0, 0},
     {"stiffness", "1",
-     "multiple of what stiffness_of says: of mass at most 1, of modulus up to about 3; a pressure p then makes bodies overlap by h p/(3 E)",
+     "multiple of what stiffness_of says: of mass at most 1, of modulus up to about 3; a pressure p makes bodies overlap by h p/(3 E). "
+     "How far bodies overlap by their drawing nothing has pressed: springs keep it from growing and do not push it out",
      NULL, AB_REAL, AB_MIN_OPEN, 0.5, 0.0, 1e6},
     {"damping", "1", "viscous part, along and across the normal, of the critical one; it never pulls and stays below the friction limit",
      NULL, AB_REAL, 0, 0.2, 0.0, 1.0},
@@ -39,7 +43,12 @@ static const ab_param PARAMS[] = {
 static const ab_state STATES[] = {
     {"elastic_slip", "m", "stretch of the spring across the normal", AB_VECTOR, AB_AVERAGE, 0.0},
     {"slips", "1", "1 where the point slipped in the last step or was apart (kept with kinetic_friction)", AB_SCALAR, AB_COPY, 0.0},
+    {"stored", "J/m", "elastic energy in the spring along the normal: what it can give back (J in three dimensions)", AB_SCALAR, AB_SUM,
+     0.0},
+    {"stiffness_across", "N/m", "of the spring across the normal in the last step (per m of thickness in plane strain)", AB_SCALAR, AB_COPY,
+     0.0},
 };
+enum { STATE_SLIPS, STATE_STORED, STATE_ACROSS }; /* rows after those of elastic_slip */
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
     const int of = (int)settings[0].integer;
@@ -65,9 +74,11 @@ static void destroy(void *self) {
 
 static const double AT_LIMIT = 1e-9; /* of the limit: what is needed beyond it is rounding, not slip */
 
-/* The stretch of the tangential spring turned with the normal: as long as it was, in the plane that is tangential now. */
-static void turned_slip(const ab_points *p, size_t i, double slip[3]) {
+/* The stretch of the tangential spring turned with the normal: as long as it was, in the plane that is tangential now. A spring that has become stiffer is as much
+ * shorter as keeps its energy, k slip^2/2. */
+static void turned_slip(const ab_points *p, size_t i, double k, double slip[3]) {
     const size_t ld = p->ld, d = p->dimension;
+    const double last = p->state0[(d + STATE_ACROSS) * ld + i];
     double along = 0.0, old = 0.0, now = 0.0;
     for (size_t c = 0; c < d; ++c) {
         slip[c] = p->state0[c * ld + i];
@@ -78,7 +89,8 @@ static void turned_slip(const ab_points *p, size_t i, double slip[3]) {
         slip[c] -= along * p->normal[c * ld + i];
         now += slip[c] * slip[c];
     }
-    const double scale = now > 0.0 ? sqrt(old / now) : 0.0;
+    double scale = now > 0.0 ? sqrt(old / now) : 0.0;
+    if (last < k) scale *= sqrt(last / k);
     for (size_t c = 0; c < d; ++c) slip[c] *= scale;
 }
 
@@ -89,7 +101,7 @@ static void slip_spring(const penalty *law, const ab_points *p, size_t i, double
     const size_t ld = p->ld, d = p->dimension;
     const double dt = p->dt, m = p->tangential_mass[i], c_dt = 2.0 * law->damping * sqrt(k * m) * dt;
     double slip[3] = {0}, stretch = 0.0, size = 0.0;
-    turned_slip(p, i, slip);
+    turned_slip(p, i, k, slip);
     for (size_t c = 0; c < d; ++c) stretch += slip[c] * slip[c];
     stretch = sqrt(stretch);
     const double kept = stretch * k * dt > limit ? limit / (stretch * k * dt) : 1.0;
@@ -100,11 +112,30 @@ static void slip_spring(const penalty *law, const ab_points *p, size_t i, double
     }
     size = sqrt(size);
     const double scale = size > limit ? limit / size : 1.0;
-    if (law->weakens) p->state1[d * ld + i] = kept < 1.0 - AT_LIMIT || scale < 1.0 - AT_LIMIT ? 1.0 : 0.0;
+    p->state1[(d + STATE_ACROSS) * ld + i] = k;
+    if (law->weakens) p->state1[(d + STATE_SLIPS) * ld + i] = kept < 1.0 - AT_LIMIT || scale < 1.0 - AT_LIMIT ? 1.0 : 0.0;
     for (size_t c = 0; c < d; ++c) {
         impulse[c] *= scale;
         p->state1[c * ld + i] = slip[c] + dt * (across[c] - impulse[c] / m);
     }
+}
+
+/* Impulse of the spring along the normal and its damper: lambda = held + c_dt (free - lambda/m), held = dt k depth, c_dt the damper times dt, free the approach
+ * without lambda; old: the approach at the start of the step.
+ *
+ * lambda takes lambda (old + new)/2 from the bodies, new = free - lambda/m, and may not take less than -stored. An approach at the start is not counted: what
+ * stops it stores its work and can give it back in the steps to come; so a spring without energy ends an approach and does not turn it round. Then
+ * lambda <= m (s + sqrt(s^2 + 2 stored/m)), s = (min(old, 0) + free)/2. Both bounds rise with free, by at most m, which is what the host's rounds need to end.
+ *
+ * What is stored is the work of the spring alone: a damper that pulls back takes what the spring gives. It is k depth^2/2 only where the gap changes by the very
+ * velocity that the impulse works on; nodes of the grid are off by a fifth, and are not cut down to it. */
+static double loaded_spring(double held, double m, double c_dt, double free, double old, double *stored) {
+    const double damped = 1.0 + c_dt / m, s = 0.5 * (fmin(old, 0.0) + free);
+    const double root = sqrt(s * s + 2.0 * *stored / m), most = s >= 0.0 ? m * (s + root) : 2.0 * *stored / (root - s);
+    const double lambda = fmax(0.0, fmin((held + c_dt * free) / damped, most));
+    const double mean = 0.5 * (old + free - lambda / m), elastic = fmax(0.0, fmin(lambda * damped - c_dt * free, held));
+    *stored = fmax(0.0, *stored + fmin(elastic * mean, lambda * mean));
+    return lambda;
 }
 
 /* h, or in three dimensions h^2. */
@@ -140,20 +171,24 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
                -1;
     for (size_t i = first; i < first + count; ++i) {
         const double depth = -p->gap[i], m = p->normal_mass[i], mt = p->tangential_mass[i], dt = p->dt;
-        double approach = 0.0, lambda = 0.0, impulse[3] = {0};
+        double approach = 0.0, began = 0.0, lambda = 0.0, impulse[3] = {0};
         for (size_t c = 0; c < d; ++c) {
             approach += p->relative_velocity[c * ld + i] * p->normal[c * ld + i];
+            began += p->relative_velocity_old[c * ld + i] * p->normal[c * ld + i];
             lambda += p->impulse[c * ld + i] * p->normal[c * ld + i];
             p->state1[c * ld + i] = 0.0;
         }
-        if (law->weakens) p->state1[d * ld + i] = 1.0; /* bodies that are apart slip; when they meet, until kinetic friction holds them */
+        p->state1[(d + STATE_SLIPS) * ld + i] =
+            law->weakens; /* bodies that are apart slip; when they meet, until kinetic friction holds them */
+        p->state1[(d + STATE_STORED) * ld + i] = p->state1[(d + STATE_ACROSS) * ld + i] = 0.0;
         /* the host bounds the next step: springs that the bodies are about to meet count already */
         if (p->stiffness && law->of == OF_MODULUS && m > 0.0 && depth > -fmax(SOON * p->cell, SOON_STEPS * dt * approach))
             p->stiffness[i] = bounding_stiffness(law, p, i);
         if (depth > 0.0 && m > 0.0) {
             const double k = normal_stiffness(law, p, i), c_dt = 2.0 * law->damping * sqrt(k * m) * dt, old = lambda;
-            /* lambda = dt k depth + dt c (approach without lambda - lambda/m) */
-            lambda = fmax(0.0, (dt * k * depth + c_dt * (approach + old / m)) / (1.0 + c_dt / m));
+            double stored = p->state0[(d + STATE_STORED) * ld + i];
+            lambda = loaded_spring(dt * k * depth, m, c_dt, approach + old / m, began, &stored);
+            p->state1[(d + STATE_STORED) * ld + i] = stored;
             if (law->friction > 0.0 && mt > 0.0) {
                 double across[3] = {0};
                 for (size_t c = 0; c < d; ++c) {
@@ -161,7 +196,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
                     across[c] = p->relative_velocity[c * ld + i] - approach * n + (p->impulse[c * ld + i] - old * n) / mt;
                 }
                 const double kt = law->tangential * (law->of == OF_MASS ? k / m * mt : k);
-                const double friction = law->weakens && p->state0[d * ld + i] > 0.5 ? law->kinetic : law->friction;
+                const double friction = law->weakens && p->state0[(d + STATE_SLIPS) * ld + i] > 0.5 ? law->kinetic : law->friction;
                 slip_spring(law, p, i, kt, friction * lambda, across, impulse);
             }
         } else
