@@ -76,7 +76,7 @@ typedef struct ab_motion_spec { /* of a rigid body; what is not given follows fr
     double mass, inertia;        /* kg, kg m2 (per m of thickness) */
 } ab_motion_spec;
 
-typedef enum ab_transfer { AB_TRANSFER_FLIP = 0, AB_TRANSFER_APIC, AB_TRANSFER_TPIC } ab_transfer;
+typedef enum ab_transfer { AB_TRANSFER_FLIP = 0, AB_TRANSFER_APIC, AB_TRANSFER_TPIC, AB_TRANSFER_XPIC, AB_TRANSFER_FMPM } ab_transfer;
 
 typedef struct ab_body_spec {
     char *name;
@@ -89,6 +89,7 @@ typedef struct ab_body_spec {
     char *basis;     /* "linear" | "gimp" */
     bool contiguous; /* domains of gimp follow the stretch */
     ab_transfer transfer;
+    int order;             /* AB_TRANSFER_XPIC, _FMPM: m */
     double flip;           /* AB_TRANSFER_FLIP: 1 flip, 0 pic */
     char *update;          /* "usf" | "usl" | "musl" */
     ab_number velocity[2]; /* formulas of x, y */

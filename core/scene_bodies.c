@@ -50,8 +50,14 @@ static void take_basis(ab_scene_reader *r, const ab_node *node, const char *wher
 
 static void take_transfer(ab_scene_reader *r, const ab_node *node, const char *where, ab_body_spec *body) {
     body->flip = 1;
+    char path[AB_WHERE];
+    ab_where_join(path, where, "transfer");
     if (node == NULL || node->kind != AB_NODE_MAP) {
         char *word = NULL;
+        if (node != NULL && node->kind == AB_NODE_SCALAR && (strcmp(node->text, "xpic") == 0 || strcmp(node->text, "fmpm") == 0)) {
+            ab_report_error(r->base.report, node->mark, "%s: '%s' needs its order; write {%s: 2}", path, node->text, node->text);
+            return;
+        }
         if (!ab_read_word(&r->base, &ab_section_body.keys[BODY_TRANSFER], node, where, &word)) return;
         if (strcmp(word, "apic") == 0) body->transfer = AB_TRANSFER_APIC;
         if (strcmp(word, "tpic") == 0) body->transfer = AB_TRANSFER_TPIC;
@@ -59,10 +65,19 @@ static void take_transfer(ab_scene_reader *r, const ab_node *node, const char *w
         return;
     }
     const ab_node *v[TRANSFER_KEYS];
-    char path[AB_WHERE];
-    ab_where_join(path, where, "transfer");
-    if (ab_section_open(&r->base, &ab_section_transfer, node, path, v))
-        ab_read_number(&r->base, &ab_section_transfer.keys[TRANSFER_FLIP], v[TRANSFER_FLIP], path, &body->flip);
+    const ab_key *key = ab_section_transfer.keys;
+    const size_t mistakes = ab_report_errors(r->base.report);
+    if (!ab_section_open(&r->base, &ab_section_transfer, node, path, v)) return;
+    int given = 0;
+    for (int k = 0; k < TRANSFER_KEYS; k++) given += v[k] != NULL;
+    if (given != 1 && ab_report_errors(r->base.report) == mistakes)
+        ab_report_error(r->base.report, node->mark, "%s needs one of flip, xpic and fmpm, not %d of them", path, given);
+    long order = 1;
+    if (v[TRANSFER_FLIP] != NULL) ab_read_number(&r->base, key + TRANSFER_FLIP, v[TRANSFER_FLIP], path, &body->flip);
+    for (int k = TRANSFER_XPIC; k <= TRANSFER_FMPM; k++)
+        if (v[k] != NULL && ab_read_integer(&r->base, key + k, v[k], path, &order))
+            body->transfer = k == TRANSFER_XPIC ? AB_TRANSFER_XPIC : AB_TRANSFER_FMPM;
+    body->order = (int)order;
 }
 
 enum { POINTS = 1, ELEMENTS = 2, RIGID = 4 };

@@ -100,8 +100,8 @@ static const ab_key body[] = {
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
     [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|!bspline2|!bspline3", .initial = "gimp",
                     .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
-    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic|!xpic", .initial = "flip",
-                       .help = "how velocities come back; a blend is {flip: 0.99}"},
+    [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic", .initial = "flip",
+                       .help = "how velocities come back; a blend is {flip: 0.99}, further ones are {xpic: 2} and {fmpm: 2}"},
     [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",
                      .help = "when stress is updated: first, last, last from mapped-back velocities"},
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
@@ -230,11 +230,14 @@ static const ab_key basis[] = {
 SECTION(basis, "bodies.NAME.basis", basis, NULL, "As a mapping, in place of a word.", "basis: {gimp: fixed}\n");
 
 static const ab_key transfer[] = {
-    [TRANSFER_FLIP] = {"flip", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0, .max = 1,
+    [TRANSFER_FLIP] = {"flip", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_RANGE, .min = 0, .max = 1,
                        .help = "part of FLIP; the rest is PIC"},
-    [TRANSFER_XPIC] = {"xpic", AB_KEY_LATER, .help = "there is flip, pic and {flip: part}"},
+    [TRANSFER_XPIC] = {"xpic", AB_KEY_INTEGER, .unit = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 20,
+                       .help = "order m of XPIC(m): PIC that loses only what the nodes cannot see; 1 is PIC, 2 to 5 are usual"},
+    [TRANSFER_FMPM] = {"fmpm", AB_KEY_INTEGER, .unit = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 20,
+                       .help = "order m of FMPM(m): PIC with m terms of the inverse of the full mass matrix; 1 is PIC"},
 };
-SECTION(transfer, "bodies.NAME.transfer", transfer, NULL, "As a mapping, in place of a word.", "transfer: {flip: 0.99}\n");
+SECTION(transfer, "bodies.NAME.transfer", transfer, NULL, "As a mapping, in place of a word: one of these keys.", "transfer: {xpic: 3}\n");
 
 static const ab_key contact[] = {
     [CONTACT_BODIES] = {"bodies", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "two names [a, b], or all for every pair"},

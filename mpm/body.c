@@ -31,6 +31,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->tiles, body->tile_capacity * sizeof *body->tiles);
     ab_memory_give(body->keys, body->tile_capacity * sizeof *body->keys);
     ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
+    ab_memory_give(body->filter, body->filter_capacity * sizeof(double) * FILTER_RECORD * AB_TILE_NODES);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
     mpm_trace_destroy(body->trace);
@@ -192,6 +193,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
+    mpm_filter(body);
     const bool remap = body->update == MPM_MUSL;
     if (!remap) mpm_loads_work(body, step);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
@@ -282,8 +284,9 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     p->tiles = body->tile_count;
     p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
-               body->patch_capacity * 8 * PATCH_DOUBLES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
-               (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
+               body->patch_capacity * 8 * PATCH_DOUBLES + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
+               body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + (body->birth ? body->born * 16 : 0) +
+               (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
@@ -300,6 +303,10 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
              : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
              body->load_count ? ", tractions" : "", body->outline ? ", outline" : "");
+    if (body->order > 1) {
+        const size_t used = strlen(p->passes);
+        snprintf(p->passes + used, sizeof p->passes - used, ", filter of velocities %d times", body->order - 1);
+    }
 }
 
 /* The three updates differ in one entry: USF strains early, MUSL maps velocities back, USL does neither. */
@@ -353,9 +360,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
                                .dimension = 2,
                                .index = index};
     body->scene = scene;
-    body->flip = spec->flip;
-    body->finish = spec->transfer == AB_TRANSFER_APIC || spec->transfer == AB_TRANSFER_TPIC ? MPM_FINISH_AFFINE : MPM_FINISH_BLEND;
-    body->moment = spec->transfer == AB_TRANSFER_APIC && body->kernel->nodes == 3;
+    mpm_transfer_choose(body);
     body->contiguous = spec->contiguous;
     body->gravity = spec->gravity;
     body->threads = threads;

@@ -25,6 +25,9 @@ enum { NODE_MASS = 0, NODE_MOMENTUM = 1, NODE_FORCE_X = 4, NODE_FORCE_Y = 6 };
 /* A node a tile owns, 64 bytes: current velocity, velocity at the start of the step, mass, inverse masses (0 where held). */
 enum { OWN_VELOCITY = 0, OWN_OLD = 2, OWN_MASS = 4, OWN_INVERSE = 5, OWN_RECORD = 8 };
 
+/* A node's part in the filter of xpic and fmpm: what is left to correct, and the sum of corrections, m/s. */
+enum { FILTER_REST = 0, FILTER_SUM = 2, FILTER_RECORD = 4 };
+
 typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int count;            /* rows in a block */
     int extent;           /* 3: (xx, yy, xy) of the domain tensor, m2 */
@@ -73,7 +76,7 @@ typedef struct
 typedef struct mpm_body mpm_body;
 
 /* Ways to bring velocities back to the points, each a pass of its own. */
-enum { MPM_FINISH_BLEND, MPM_FINISH_AFFINE, MPM_FINISH_WAYS };
+enum { MPM_FINISH_BLEND, MPM_FINISH_AFFINE, MPM_FINISH_EXTENDED, MPM_FINISH_WAYS };
 
 typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
     const char *basis;
@@ -82,6 +85,7 @@ typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
     void (*spreads)(const mpm_body *, const mpm_tile *, const double *block, double d[2][8]); /* sum N (x_i - x_p)^2 by direction, m2 */
     void (*scatter[2])(mpm_body *, size_t tile);                                              /* plain; with the affine part */
     void (*finish[MPM_FINISH_WAYS])(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
+    void (*filter)(mpm_body *, size_t tile); /* xpic, fmpm: what FILTER_REST holds, to the points and back onto the patch */
     int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance,
                   mpm_sums *); /* -1, or the block near which the material gave up */
 } mpm_kernel;
@@ -97,6 +101,8 @@ struct mpm_body {
     double flip;
     int finish;  /* MPM_FINISH_* */
     bool moment; /* rows.affine holds B, not C: see transfer.inc */
+    int order;   /* xpic, fmpm: m */
+    bool full;   /* fmpm: the filter takes the velocity after the forces, not the one before */
     bool contiguous, gravity;
     int threads;
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
@@ -117,7 +123,8 @@ struct mpm_body {
     size_t tile_count, tile_capacity;
     double *own;     /* OWN_RECORD * AB_TILE_NODES per tile */
     double *patches; /* PATCH_DOUBLES per tile with points */
-    size_t own_capacity, patch_capacity, patch_count;
+    double *filter;  /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
+    size_t own_capacity, filter_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
     uint64_t version; /* of the tile list */
@@ -165,7 +172,9 @@ static inline double *mpm_block(const mpm_body *body, size_t block) { return bod
 /* material.c */
 ab_status mpm_material_start(mpm_body *, ab_report *); /* the material's instance; stress and states of the points at the start */
 
-/* transfer.c: what apic and tpic keep of a point besides its velocity */
+/* transfer.c */
+void mpm_transfer_choose(mpm_body *);               /* from the scene: before the rows are planned */
+void mpm_filter(mpm_body *);                        /* xpic, fmpm: after contact and damping, before finish */
 void mpm_affine_start(mpm_body *, const ab_fill *); /* the slope of the velocity drawn */
 /* Of the point in a slot, at rows.x: twice the kinetic energy of its affine part, tr(C D C^T) (0 without one), and its angular momentum, per kg. */
 double mpm_affine_inner(const mpm_body *, size_t slot, double *spin);
@@ -182,8 +191,11 @@ void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);              /
 void mpm_grid_assemble_remap(mpm_body *);                                      /* velocity of the points mapped back */
 void mpm_grid_fetch_velocity(const mpm_body *, size_t tile, double *pairs);    /* a patch of velocities */
 void mpm_grid_fetch_motion(const mpm_body *, size_t tile, double *quadruples); /* a patch of velocities and their changes in this step */
-double mpm_grid_damp(mpm_body *, double factor);                               /* after contact; energy taken, J */
-void mpm_grid_limit_light(mpm_body *);                                         /* USL: light nodes take their old velocity for the strain */
+void mpm_grid_fetch_filter(const mpm_body *, size_t tile, int from, double *pairs); /* a patch of FILTER_REST or FILTER_SUM */
+void mpm_grid_filter_start(mpm_body *);                                             /* the rest is the whole velocity to be corrected */
+void mpm_grid_filter_assemble(mpm_body *);       /* the rest loses what came back, the sum gains the rest */
+double mpm_grid_damp(mpm_body *, double factor); /* after contact; energy taken, J */
+void mpm_grid_limit_light(mpm_body *);           /* USL: light nodes take their old velocity for the strain */
 
 /* loads.c */
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);

@@ -90,8 +90,10 @@ void mpm_grid_assemble_remap(mpm_body *body) {
     }
 }
 
-/* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. */
-static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, int lanes, double *patch) {
+/* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. A record of `size` doubles per node;
+ * two lanes: the first two of it; four: of the nodes' own records, the velocity and its change. */
+static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, const double *records, size_t size, int lanes,
+                                                        double *patch) {
     const mpm_tile *tile = body->tiles + number;
     for (int s = 0; s < 9; ++s) {
         const int dx = s % 3 - 1, dy = s / 3 - 1;
@@ -103,19 +105,50 @@ static inline __attribute__((always_inline)) void fetch(const mpm_body *body, si
                 memset(to, 0, sizeof(double) * (size_t)(lanes * (i1 - i0)));
                 continue;
             }
-            const double *own = body->own + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * OWN_RECORD;
-            for (int i = 0; i < i1 - i0; ++i, own += OWN_RECORD) {
-                const v2 now = v2_load(own + OWN_VELOCITY);
+            const double *own = records + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * size;
+            for (int i = 0; i < i1 - i0; ++i, own += size) {
+                const v2 now = v2_load(own);
                 v2_store(to + lanes * i, now);
-                if (lanes == 4) v2_store(to + lanes * i + 2, now - v2_load(own + OWN_OLD));
+                if (lanes == 4) v2_store(to + lanes * i + 2, now - v2_load(own - OWN_VELOCITY + OWN_OLD));
             }
         }
     }
     memset(patch + lanes * PATCH_NODES, 0, 8 * sizeof(double)); /* a row of four nodes may look past the last three */
 }
 
-void mpm_grid_fetch_velocity(const mpm_body *body, size_t number, double *pairs) { fetch(body, number, 2, pairs); }
-void mpm_grid_fetch_motion(const mpm_body *body, size_t number, double *quadruples) { fetch(body, number, 4, quadruples); }
+void mpm_grid_fetch_velocity(const mpm_body *body, size_t number, double *pairs) {
+    fetch(body, number, body->own + OWN_VELOCITY, OWN_RECORD, 2, pairs);
+}
+void mpm_grid_fetch_motion(const mpm_body *body, size_t number, double *quadruples) {
+    fetch(body, number, body->own + OWN_VELOCITY, OWN_RECORD, 4, quadruples);
+}
+void mpm_grid_fetch_filter(const mpm_body *body, size_t number, int from, double *pairs) {
+    fetch(body, number, body->filter + from, FILTER_RECORD, 2, pairs);
+}
+
+void mpm_grid_filter_start(mpm_body *body) {
+    const int from = body->full ? OWN_VELOCITY : OWN_OLD;
+    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
+        const v2 whole = v2_load(body->own + n * OWN_RECORD + from);
+        v2_store(body->filter + n * FILTER_RECORD + FILTER_REST, whole);
+        v2_store(body->filter + n * FILTER_RECORD + FILTER_SUM, whole - whole);
+    }
+}
+
+void mpm_grid_filter_assemble(mpm_body *body) {
+#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
+    for (size_t k = 0; k < body->tile_count; ++k) {
+        double back[2 * AB_TILE_NODES] __attribute__((aligned(64)));
+        add_patches(body, body->tiles + k, 2, back);
+        const double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+        double *filter = body->filter + k * FILTER_RECORD * AB_TILE_NODES;
+        for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD, filter += FILTER_RECORD)
+            for (int c = 0; c < 2; ++c) {
+                filter[FILTER_REST + c] -= back[2 * n + c] * own[OWN_INVERSE + c];
+                filter[FILTER_SUM + c] += filter[FILTER_REST + c];
+            }
+    }
+}
 
 static const double LIGHT = 1e-4; /* of a point's mass: a node with less is light */
 

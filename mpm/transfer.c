@@ -1,7 +1,40 @@
-/* transfer.c: what apic and tpic keep of a point besides its velocity, outside of the passes over points (transfer.inc): how it starts, its energy and spin. */
+/* transfer.c: transfers of velocity outside of the passes over points (transfer.inc): which one a body uses; the filter of xpic and fmpm; what apic and tpic keep of
+ * a point besides its velocity: how it starts, its energy and spin. */
 #include <math.h>
 
 #include "mpm/body.h"
+
+void mpm_transfer_choose(mpm_body *body) {
+    const ab_body_spec *spec = body->domain.spec;
+    body->flip = spec->flip;
+    body->finish = MPM_FINISH_BLEND;
+    if (spec->transfer == AB_TRANSFER_APIC || spec->transfer == AB_TRANSFER_TPIC) body->finish = MPM_FINISH_AFFINE;
+    body->moment = spec->transfer == AB_TRANSFER_APIC && body->kernel->nodes == 3;
+    if (spec->transfer == AB_TRANSFER_XPIC || spec->transfer == AB_TRANSFER_FMPM) {
+        body->order = spec->order;
+        body->full = spec->transfer == AB_TRANSFER_FMPM;
+        body->flip = 0.0; /* of order 1 both are pic */
+        if (body->order > 1) body->finish = MPM_FINISH_EXTENDED;
+    }
+}
+
+/* With S from nodes to points, v_p = sum N_i v_i, and S+ back, v_i = sum N_i m_p v_p / m_i, both transfers use A = sum (1 - S+ S)^k, k = 0 .. m-1, which tends to
+ * the inverse of S+ S, that is, of the full mass matrix where the lumped one stands:
+ *   xpic  v_p = S (A v_old + a dt)   Hammerquist and Nairn 2017: v_p + S a dt - (1 - S S+)^m v_p, as S A S+ = 1 - (1 - S S+)^m
+ *   fmpm  v_p = S A (v_old + a dt)   Nairn and Hammerquist 2021: the velocity of the nodes by the full mass matrix
+ * v_old + a dt is what the nodes have after contact, sides and damping, and moves the points as in every other transfer: x_p += dt S (v_old + a dt).
+ * A - 1 is found term by term, r_0 = v_old or v_old + a dt, r_k = r_(k-1) - S+ S r_(k-1): m-1 times to the points and back. Nodes that a side holds stay held
+ * in every term. All of S+ S lies between 0 and 1, so the terms only fall. */
+void mpm_filter(mpm_body *body) {
+    if (body->order < 2) return;
+    mpm_grid_filter_start(body);
+    for (int k = 1; k < body->order; ++k) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
+        for (size_t n = 0; n < body->tile_count; ++n)
+            if (body->tiles[n].patch >= 0) body->kernel->filter(body, n);
+        mpm_grid_filter_assemble(body);
+    }
+}
 
 /* Slope of a start velocity along one direction across the point's own domain, 1/s. So a linear field has its slope to rounding, a jump is spread over the point
  * it lies in, and nothing is asked far outside of the body, where a formula may have no value; where it has none on one side, the other side serves. */
