@@ -14,6 +14,7 @@
 #include "core/progress.h"
 
 static const double MOST_STEPS = 1e12; /* of a run; more would take years */
+static const double COLLAPSED = 1e-9;  /* of the first limit of the step: a run that has come to this does not end */
 
 static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
 
@@ -85,6 +86,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
     s->dt = choose_dt(s);
+    s->first_critical_dt = s->critical_dt;
     if (!(scene->time_dt > 0.0) && isinf(s->critical_dt)) {
         ab_schedule_destroy(s);
         return ab_report_error(
@@ -183,6 +185,20 @@ static void warn_of_dt(ab_schedule *s, ab_report *report) {
                       s->time, s->scene->time_dt, s->critical_dt, s->limit);
 }
 
+/* A step by cfl that falls and falls: something in the scene runs away, or time does not go on any more. */
+static ab_status stop_collapse(const ab_schedule *s, ab_report *report) {
+    if (s->scene->time_dt > 0.0) return AB_OK;
+    const double wanted = s->scene->time_cfl * s->critical_dt;
+    if (wanted >= COLLAPSED * s->scene->time_cfl * s->first_critical_dt && s->time + wanted > s->time) return AB_OK;
+    return ab_report_failure(
+        report,
+        "at %.9g s, after %ld steps, the step has collapsed to %.3g s, from %.3g s at the start, by this limit: %s. The "
+        "run would not end; what was computed until now is in the results. Look at the last frames: something there is "
+        "torn, crushed or thrown; use a smaller cfl, finer cells or elements, a material that hardens, or for a spring "
+        "of contact stiffness_of: mass",
+        s->time, s->number, wanted, s->scene->time_cfl * s->first_critical_dt, s->limit);
+}
+
 /* What contact finders had to leave undecided. */
 static void warn_of_failures(const ab_schedule *s, ab_report *report) {
     const ab_contact_totals *totals = s->interaction ? s->interaction->totals(s->interaction) : NULL;
@@ -199,6 +215,7 @@ static void warn_of_failures(const ab_schedule *s, ab_report *report) {
 ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     const double dt = choose_dt(s);
+    AB_TRY(stop_collapse(s, report));
     if (s->interaction) warn_of_dt(s, report);
     ab_step step = {.time = s->time, .dt = dt, .number = s->number};
     for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);

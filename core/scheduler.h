@@ -23,7 +23,7 @@ typedef struct ab_schedule { /* a scene on its way through time */
     ab_domain **domains;
     size_t body_count;
     ab_interaction *interaction; /* NULL without contacts */
-    double time, dt, critical_dt;
+    double time, dt, critical_dt, first_critical_dt;
     long number;
     const char *limit; /* what binds dt */
     bool warned;       /* of a dt above the limit */

@@ -1,0 +1,50 @@
+#!/bin/bash
+# cost: 1
+# A step by cfl that falls without end stops the run: a body whose speed grows as h/(T - t) would take its cells in ever shorter steps and never reach T. The error
+# says when, how far the step fell, by which limit and what to do; what was computed can be read. A step that only ends on time is no collapse.
+# test_step_collapse.sh BUILD
+set -eu
+build=${1:?the build folder}
+scratch=${ABUT_SCRATCH:-$(mktemp -d)}
+scene() { # end, gravity
+    cat <<YAML
+abut: 1
+constants: {h: 1, T: 1, C: 1.5}
+gravity: ["$2", 0]
+time: {end: $1, cfl: 0.4}
+grid: {from: [0, 0], to: [100, 4], cell: h}
+materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}
+bodies:
+  rocket: {method: material-points, material: m, shape: {box: [[1, 1], [3, 3]]}}
+monitors:
+  - {name: v, body: rocket, value: velocity.x}
+history: {every: 1}
+YAML
+}
+scene 2 "C*h/(T - t)^2" >"$scratch/collapse.yaml"
+status=0
+"$build/abut" run "$scratch/collapse.yaml" --quiet -j 1 -o "$scratch/collapse" >"$scratch/log" 2>&1 || status=$?
+cat "$scratch/log"
+[ $status -eq 1 ] || { echo "ended with status $status"; exit 1; }
+for words in 'error: at 0.99999999[0-9]* s, after' 'collapsed to [0-9.]*e-10 s' "wave speed 1 m/s of 'rocket'" 'use a smaller cfl' 'is in the results'; do
+    grep -q "$words" "$scratch/log" || { echo "the error does not say: $words"; exit 1; }
+done
+python3 - "$scratch/collapse" <<'PYTHON'
+import csv
+import json
+import sys
+
+folder = sys.argv[1]
+with open(f"{folder}/summary.json") as stream:
+    summary = json.load(stream)
+assert summary["outcome"].startswith("failed: error: at 0.99999999"), summary["outcome"]
+with open(f"{folder}/history.csv") as stream:
+    rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+assert len(rows) == summary["steps"] + 1 > 50, len(rows)
+t, v = float(rows[-2]["t"]), float(rows[-2]["v"])
+assert 0.5 < v * (1 - t) / 1.5 < 2, (t, v)  # what it should be: C h/(T - t)
+PYTHON
+
+# An end that leaves 1e-12 of a step to go
+scene "0.2*20*(1 + 1e-12)" 0 >"$scratch/end.yaml"
+"$build/abut" run "$scratch/end.yaml" --quiet -j 1 -o "$scratch/end"
