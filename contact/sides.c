@@ -16,48 +16,67 @@ static void arm(const contact_side *s, size_t i, double r[2]) {
     r[1] = s->points->position[s->points->ld + i] - s->dofs.centre[1];
 }
 
-void contact_relative_velocity(const contact_side side[2], bool old, size_t i, double v[2]) {
-    v[0] = v[1] = 0.0;
-    for (int k = 0; k < 2; ++k) {
-        const contact_side *s = side + k;
-        const double *velocity = old ? s->dofs.velocity_old : s->dofs.velocity;
-        const size_t stride = old ? s->dofs.old_stride : s->dofs.velocity_stride;
-        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
-            const double *u = velocity + (size_t)s->dof[e] * stride, w = s->sign * s->weight[e];
-            v[0] += w * u[0];
-            v[1] += w * u[1];
-        }
-        if (s->dofs.spin) {
-            const double spin = s->sign * (old ? *s->dofs.spin_old : *s->dofs.spin);
-            double r[2];
-            arm(s, i, r);
-            v[0] -= spin * r[1];
-            v[1] += spin * r[0];
-        }
+/* Velocity of one side's dofs at point i. Two sums, of every other dof: one would wait for each of its terms in turn, and the rounds for it. */
+static void velocity_at(const contact_side *s, bool old, size_t i, double v[2]) {
+    const double *velocity = old ? s->dofs.velocity_old : s->dofs.velocity, *weight = s->weight;
+    const size_t stride = old ? s->dofs.old_stride : s->dofs.velocity_stride, end = s->start[i + 1];
+    const uint32_t *dof = s->dof;
+    double even[2] = {0.0, 0.0}, odd[2] = {0.0, 0.0};
+    size_t e = s->start[i];
+    for (; e + 1 < end; e += 2) {
+        const double *u = velocity + dof[e] * stride, *w = velocity + dof[e + 1] * stride;
+        even[0] += weight[e] * u[0];
+        even[1] += weight[e] * u[1];
+        odd[0] += weight[e + 1] * w[0];
+        odd[1] += weight[e + 1] * w[1];
     }
+    if (e < end) {
+        const double *u = velocity + dof[e] * stride;
+        even[0] += weight[e] * u[0];
+        even[1] += weight[e] * u[1];
+    }
+    v[0] = even[0] + odd[0];
+    v[1] = even[1] + odd[1];
+    if (s->dofs.spin) {
+        const double spin = old ? *s->dofs.spin_old : *s->dofs.spin;
+        double r[2];
+        arm(s, i, r);
+        v[0] -= spin * r[1];
+        v[1] += spin * r[0];
+    }
+}
+
+void contact_relative_velocity(const contact_side side[2], bool old, size_t i, double v[2]) {
+    double a[2], b[2];
+    velocity_at(side, old, i, a);
+    velocity_at(side + 1, old, i, b);
+    v[0] = a[0] - b[0];
+    v[1] = a[1] - b[1];
 }
 
 void contact_push(const contact_side side[2], size_t i, const double j[2]) {
     for (int k = 0; k < 2; ++k) {
         const contact_side *s = side + k;
-        for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
-            const size_t dof = s->dof[e];
-            const double share = s->sign * s->weight[e], jx = share * j[0], jy = share * j[1];
-            const double *inverse_mass = s->dofs.inverse_mass + dof * s->dofs.mass_stride;
-            double *velocity = s->dofs.velocity + dof * s->dofs.velocity_stride;
-            const double vx = velocity[0] - jx * inverse_mass[0], vy = velocity[1] - jy * inverse_mass[1];
-            velocity[0] = vx;
-            velocity[1] = vy;
-            if (!s->dofs.impulse) continue;
-            s->dofs.impulse[2 * dof] -= jx;
-            s->dofs.impulse[2 * dof + 1] -= jy;
+        const double jx = s->sign * j[0], jy = s->sign * j[1], *weight = s->weight, *mass = s->dofs.inverse_mass;
+        const uint32_t *dofs = s->dof;
+        const size_t stride = s->dofs.velocity_stride, mass_stride = s->dofs.mass_stride, begin = s->start[i], end = s->start[i + 1];
+        double *velocities = s->dofs.velocity, *impulse = s->dofs.impulse;
+        for (size_t e = begin; e < end; ++e) {
+            const double *inverse_mass = mass + dofs[e] * mass_stride;
+            double *velocity = velocities + dofs[e] * stride;
+            velocity[0] -= weight[e] * inverse_mass[0] * jx;
+            velocity[1] -= weight[e] * inverse_mass[1] * jy;
+        }
+        for (size_t e = begin; impulse && e < end; ++e) {
+            impulse[2 * (size_t)dofs[e]] -= weight[e] * jx;
+            impulse[2 * (size_t)dofs[e] + 1] -= weight[e] * jy;
         }
         if (s->dofs.spin) {
             double r[2];
             arm(s, i, r);
-            const double moment = -s->sign * (r[0] * j[1] - r[1] * j[0]);
-            *s->dofs.spin += moment * s->dofs.inverse_inertia;
-            if (s->dofs.impulse) s->dofs.impulse[2] += moment;
+            const double moment = jy * r[0] - jx * r[1];
+            *s->dofs.spin -= moment * s->dofs.inverse_inertia;
+            if (impulse) impulse[2] -= moment;
         }
     }
 }

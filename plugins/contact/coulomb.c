@@ -82,7 +82,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         const double friction = law->weakens && p->state0[i] > 0.5 ? law->kinetic : law->friction;
         double limit = friction * larger(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
         if (law->shear_cap > 0.0) limit = smaller(limit, law->shear_cap * area_dt);
-        double slip[3] = {0}, size = 0.0, left = 0.0; /* tangential impulse that would end the slip; that of it which is not there yet */
+        double slip[3] = {0}, size = 0.0, left = 0.0; /* tangential impulse that would end the slip; square of the slip that is left */
         for (size_t c = 0; c < d; ++c) {
             const double v = p->relative_velocity[c * ld + i] - approach * p->normal[c * ld + i];
             slip[c] = p->impulse[c * ld + i] - normal_impulse * p->normal[c * ld + i] + p->tangential_mass[i] * v;
@@ -90,9 +90,9 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
             left += v * v;
         }
         size = sqrt(size);
-        left = p->tangential_mass[i] * sqrt(left);
         const double scale = size > limit ? limit / size : 1.0;
-        if (law->weakens) p->state1[i] = size > limit * (1.0 + AT_LIMIT) && left > limit * AT_LIMIT ? 1.0 : 0.0;
+        if (law->weakens)
+            p->state1[i] = size > limit * (1.0 + AT_LIMIT) && p->tangential_mass[i] * sqrt(left) > limit * AT_LIMIT ? 1.0 : 0.0;
         for (size_t c = 0; c < d; ++c) p->impulse[c * ld + i] = lambda * p->normal[c * ld + i] + scale * slip[c];
     }
     return 0;
