@@ -9,6 +9,7 @@
 
 static const double FINEST = 1e-6; /* of the length of all faces: no finer cells */
 static const double INWARD = 0.5;  /* of a typical face: how deep inside, beyond half its size, a point still finds its face */
+static const double AHEAD = 0.25;  /* of a typical face: the same, beyond what the bodies overlapped in the last step */
 /* Cells that a body may leap in a step and still be seen in time: regions cost its square times the faces. */
 static const double LEAST_LEAP = 4.0, MOST_LEAP = 64.0, LEAP_COST = 2e6;
 
@@ -17,6 +18,8 @@ struct contact_broad {
     double length[2];       /* m, of a typical face of a and of b, no more than a cell */
     double speed;           /* m/s */
     double needed[2];       /* m, reach of the last step */
+    double depth;           /* m, by which the bodies overlapped in the last step */
+    bool told;              /* that they are deep in each other */
     contact_reach reach[2]; /* of the faces of a and of b */
 };
 
@@ -36,6 +39,15 @@ void contact_broad_destroy(contact_broad *broad) {
 
 double contact_broad_cell(const contact_broad *broad) { return broad->cell; }
 double contact_broad_speed(const contact_broad *broad) { return broad->speed; }
+double contact_broad_face(const contact_broad *broad) { return ab_larger(broad->length[0], broad->length[1]); }
+void contact_broad_note_depth(contact_broad *broad, double depth) { broad->depth = depth; }
+
+bool contact_broad_tell(contact_broad *broad) {
+    const bool first = !broad->told;
+    broad->told = true;
+    return first;
+}
+
 size_t contact_broad_visits(const contact_broad *broad) { return broad->reach[0].visits + broad->reach[1].visits; }
 size_t contact_broad_builds(const contact_broad *broad) { return broad->reach[0].builds + broad->reach[1].builds; }
 
@@ -132,7 +144,7 @@ static double largest_half(const ab_surface *s) {
 }
 
 /* Points of both bodies near the other's faces, and how far a point has to look beyond its half size: 2 dt times the largest relative speed (the step is still
- * to change velocities), and a part of a face inwards. */
+ * to change velocities), and inwards a part of a face or, where the bodies were deeper in each other than that, so far that they stay in touch. */
 static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surface[2], double distance[2], ab_report *report) {
     enum { TRIES = 3 };
     contact_broad *broad = pair->broad;
@@ -156,7 +168,8 @@ static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surfac
         bool enough = true;
         for (int side = 0; side < 2; ++side) {
             const double most = ab_larger(LEAST_LEAP, ab_smaller(MOST_LEAP, sqrt(LEAP_COST / (1.0 + (double)surface[side].face_count))));
-            distance[side] = ab_smaller(2.0 * dt * broad->speed, most * broad->cell) + INWARD * broad->length[side];
+            const double inward = ab_larger(INWARD * broad->length[side], broad->depth + AHEAD * broad->length[side]);
+            distance[side] = ab_smaller(2.0 * dt * broad->speed, most * broad->cell) + ab_smaller(inward, most * broad->cell);
             needed[side] = distance[side] + largest_half(surface + 1 - side);
             enough = enough && (!surface[1 - side].point_count || needed[side] <= broad->reach[side].reach);
         }

@@ -81,20 +81,26 @@ ab_status contact_broad_create(const ab_scene *, contact_pair *, ab_report *);
 void contact_broad_destroy(contact_broad *);
 /* Surfaces of both bodies, each point with the other body's faces near it. They stay the domains' and the broad phase's, until the next call. */
 ab_status contact_surfaces(contact_pair *, double dt, ab_surface *a, ab_surface *b, ab_report *);
-double contact_broad_cell(const contact_broad *);  /* m; the grid's, or without one the mean length of a face. Known after the first call */
-double contact_broad_speed(const contact_broad *); /* m/s, largest of a place on one surface against one on the other */
+double contact_broad_cell(const contact_broad *); /* m; the grid's, or without one the mean length of a face. Known after the first call */
+double contact_broad_face(const contact_broad *); /* m, typical, the longer one of the two bodies. Known after the first call */
+void contact_broad_note_depth(contact_broad *, double depth); /* m, by which the bodies overlap now: the next call looks that much deeper */
+bool contact_broad_tell(contact_broad *);           /* true once: the user has not been told yet that the bodies are deep in each other */
+double contact_broad_speed(const contact_broad *);  /* m/s, largest of a place on one surface against one on the other */
 size_t contact_broad_visits(const contact_broad *); /* pairs of a point and a face that were looked at in the last call */
 size_t contact_broad_builds(const contact_broad *); /* how often regions and buckets were made so far */
 
 /* find.c */
 ab_status contact_can_find(const contact_pair *, ab_report *); /* the bodies have what the finder needs */
 ab_status contact_find(contact_pair *, const ab_step *, ab_report *);
-/* Contact keeps bodies from getting deeper into each other and does not push apart what is drawn one inside the other: says so, after the first find. */
-void contact_warn_of_overlap(const ab_scene *, const contact_pair *, ab_report *);
 ab_status contact_complain(const contact_pair *, const ab_service *, const char *what, int code, ab_report *);
 
 /* Rows of HISTORY_*: as the dynamic stage of this step has left the points (answered), or that of the last step. */
 const double *contact_history(const contact_pair *, bool answered);
+
+/* overlap.c: contact keeps bodies from getting deeper into each other and does not push apart what is drawn one inside the other: says so, after the first find. */
+void contact_warn_of_overlap(const ab_scene *, const contact_pair *, ab_report *);
+/* Surfaces alone: says once that bodies have come deeper into each other than a face is long; and lets the next look reach as deep. After every find. */
+void contact_watch_depth(contact_pair *, ab_report *);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);

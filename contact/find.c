@@ -113,27 +113,6 @@ ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *repor
     const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
     if (code != 0) return contact_complain(pair, &pair->finder_service, "find", code, report);
     pair->failures += p->failures;
+    if (needs & AB_NEED_SURFACE) contact_watch_depth(pair, report);
     return AB_OK;
-}
-
-/* Seen by points that reach into the other body, and by nodes around which both together take more room than there is. */
-void contact_warn_of_overlap(const ab_scene *scene, const contact_pair *pair, ab_report *report) {
-    static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume */
-    const ab_points *p = &pair->points.view;
-    const double h = p->cell;
-    double deepest = 0.0, most = 0.0;
-    for (size_t i = 0; i < p->count; ++i) deepest = fmax(deepest, -p->gap[i]);
-    const size_t material_a = pair->a->spec->material, material_b = pair->b->spec->material;
-    if (pair->node_count && material_a != SIZE_MAX && material_b != SIZE_MAX) { /* a rigid body may have no density */
-        ab_node_tiles a, b;
-        pair->a->ops->node_tiles(pair->a, &a);
-        pair->b->ops->node_tiles(pair->b, &b);
-        const double density_a = scene->materials[material_a].density, density_b = scene->materials[material_b].density;
-        for (size_t k = 0; k < pair->node_count; ++k)
-            most = fmax(most, a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b);
-    }
-    if (deepest <= DEEP * h && most <= CROWDED * h * h) return;
-    ab_report_warning(report, pair->spec->mark,
-                      "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side",
-                      pair->a->spec->name, pair->b->spec->name);
 }

@@ -366,6 +366,98 @@ static void test_overlap_is_told_once(void **state) {
     }
 }
 
+/* How many of the warnings so far hold these words. */
+static size_t told(const surface_scene *s, const char *words) {
+    size_t times = 0;
+    for (size_t k = 0; ab_report_text(s->plugins.report, k); k++) times += strstr(ab_report_text(s->plugins.report, k), words) != NULL;
+    return times;
+}
+
+/* A wheel of some hundred vertices drawn into a box, a thin and a round body, and into the hole of a ring: how many vertices lie inside and how deep, against a count
+ * by hand. */
+static void test_points_drawn_deep_inside_are_told_by_number_and_depth(void **state) {
+    (void)state;
+    for (int round = 0; round < 60; round++) {
+        const size_t n = 3 + (size_t)random_between(0, 200);
+        const double x = random_between(-1.5, 1.5), y = random_between(-1.5, 1.5), radius = random_between(0.05, 0.8);
+        const bool hollow = round % 3 == 0;
+        surface_body *a = wheel("wheel", n, x, y, radius, 0);
+        surface_body *b = round % 3 == 1 ? box("other", -1, -0.7, 0.8, 1.1, 1) : wheel("other", 77, 0, 0, 1.2, 1);
+        if (hollow) { /* the second half of the vertices runs round a hole */
+            surface_body_destroy(b);
+            b = surface_body_create("other", 80, 80, 1);
+            for (size_t k = 0; k < 80; k++) {
+                const double angle = 2 * 3.141592653589793 / 40 * (double)(k < 40 ? k : 80 - k), r = k < 40 ? 1.2 : 0.7;
+                surface_body_put(b, k, r * cos(angle), r * sin(angle));
+                b->face[3 * k] = (uint32_t)k, b->face[3 * k + 1] = (uint32_t)(k % 40 == 39 ? k - 39 : k + 1);
+                b->face[3 * k + 2] = UINT32_MAX;
+                b->beside[2 * k] = (uint32_t)(k % 40 == 0 ? k + 39 : k - 1), b->beside[2 * k + 1] = b->face[3 * k + 1];
+            }
+        }
+        surface_scene s;
+        surface_scene_create(&s, a, b, "frictionless", NULL, 0);
+        size_t count[2] = {0}, close = 0;
+        double deepest[2] = {0}, cell = INFINITY;
+        for (int k = 0; k < 2; k++) {
+            const surface_body *body = k ? b : a;
+            double sum = 0;
+            for (size_t f = 0; f < body->faces; f++)
+                sum += hypot(body->x[body->face[3 * f + 1]] - body->x[body->face[3 * f]],
+                             body->x[body->vertices + body->face[3 * f + 1]] - body->x[body->vertices + body->face[3 * f]]);
+            cell = fmin(cell, sum / (double)body->faces);
+        }
+        for (int k = 0; k < 2; k++) {
+            const surface_body *body = k ? b : a, *other = k ? a : b;
+            for (size_t v = 0; v < body->vertices; v++) {
+                const double t[2] = {body->x[v], body->x[body->vertices + v]};
+                double nearest = INFINITY, turn = 0;
+                for (size_t f = 0; f < other->faces; f++) {
+                    const size_t p = other->face[3 * f], q = other->face[3 * f + 1], ld = other->vertices;
+                    nearest = fmin(nearest, distance(other, f, t));
+                    const double u[2] = {other->x[p] - t[0], other->x[ld + p] - t[1]}, w[2] = {other->x[q] - t[0], other->x[ld + q] - t[1]};
+                    turn += atan2(u[0] * w[1] - u[1] * w[0], u[0] * w[0] + u[1] * w[1]);
+                }
+                if (fabs(nearest - 0.01 * cell) < 1e-9) close++;
+                if (fabs(turn) < 3 || nearest <= 0.01 * cell) continue;
+                count[k]++;
+                deepest[k] = fmax(deepest[k], nearest);
+            }
+        }
+        surface_scene_solve(&s);
+        for (int k = 0; k < 2 && !close; k++) {
+            char words[128];
+            snprintf(words, sizeof words, "%zu point%s of '%s' in '%s', up to %.3g m deep", count[k], count[k] == 1 ? "" : "s",
+                     k ? "other" : "wheel", k ? "wheel" : "other", deepest[k]);
+            assert_int_equal(told(&s, words), count[k] > 0);
+        }
+        surface_scene_solve(&s);
+        assert_true(ab_report_warnings(s.plugins.report) <= 1);
+        surface_scene_destroy(&s);
+    }
+}
+
+/* Pressed into each other by a tenth of a face a step, to the depth of two: they are in touch all the way, and it is told once. */
+static void test_bodies_pressed_deep_stay_in_touch(void **state) {
+    (void)state;
+    const double low[14][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {3, 3},
+                               {3, 4}, {2, 4}, {1, 4}, {0, 4}, {0, 3}, {0, 2}, {0, 1}};
+    surface_body *a = box("upper", 1.2, 4.01, 1.8, 9, 0), *b = surface_polygon("lower", low, 14, false, 1);
+    surface_scene s;
+    surface_scene_create(&s, a, b, "frictionless", NULL, 0);
+    double depth = -0.01;
+    surface_scene_solve(&s);
+    for (int step = 0; step < 22; step++) {
+        for (size_t k = 0; k < 4; k++) a->x[4 + k] -= 0.1;
+        depth += 0.1;
+        s.step.time += s.step.dt;
+        surface_scene_solve(&s);
+        near(s.interaction->totals(s.interaction)->penetration, fmin(depth, 1.8), 1e-12); /* deeper, a side is nearer */
+    }
+    assert_int_equal(told(&s, "more than a face is long"), 1);
+    assert_int_equal(ab_report_warnings(s.plugins.report), 1);
+    surface_scene_destroy(&s);
+}
+
 static void test_failures_are_counted(void **state) {
     (void)state;
     const double corner[6][2] = {{0, 0}, {3, 0}, {3, 1}, {1.6, 1}, {1.6, 1}, {0, 1}};
@@ -410,6 +502,8 @@ int main(void) {
         cmocka_unit_test(test_given_wedge_lifts_a_guided_node),
         cmocka_unit_test(test_springs_limit_the_step),
         cmocka_unit_test(test_overlap_is_told_once),
+        cmocka_unit_test(test_points_drawn_deep_inside_are_told_by_number_and_depth),
+        cmocka_unit_test(test_bodies_pressed_deep_stay_in_touch),
         cmocka_unit_test(test_failures_are_counted),
         cmocka_unit_test(test_bodies_without_faces_are_refused),
     };
