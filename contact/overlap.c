@@ -191,11 +191,14 @@ static bool warn_of_points_inside(const ab_scene *scene, const contact_pair *pai
         deepest = ab_larger(deepest, found.deepest);
     }
     if (!any) return false;
-    if (2.0 * deepest > contact_broad_face(pair->broad)) contact_broad_tell(pair->broad); /* no news when contact has got hold of it */
+    contact_broad_note_depth(pair->broad, deepest); /* from the next step on contact has hold of them */
+    const bool deep = 2.0 * deepest > contact_broad_face(pair->broad);
+    if (deep) contact_broad_tell(pair->broad);
     ab_report_warning(
         report, pair->spec->mark,
-        "bodies '%s' and '%s' overlap at the start, %s%s, and stay so: contact does not push them apart; draw them side by side",
-        pair->a->spec->name, pair->b->spec->name, text[0], text[1]);
+        "bodies '%s' and '%s' overlap at the start, %s%s, and stay so: contact does not push them apart%s; draw them side by side",
+        pair->a->spec->name, pair->b->spec->name, text[0], text[1],
+        deep ? ", and what has come past the middle of a body may fall out behind" : "");
     return true;
 }
 
