@@ -436,12 +436,17 @@ static void test_points_drawn_deep_inside_are_told_by_number_and_depth(void **st
     }
 }
 
+/* 3 m by 4 m, in faces of 1 m. */
+static surface_body *metres(void) {
+    const double low[14][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {3, 3},
+                               {3, 4}, {2, 4}, {1, 4}, {0, 4}, {0, 3}, {0, 2}, {0, 1}};
+    return surface_polygon("lower", low, 14, false, 1);
+}
+
 /* Pressed into each other by a tenth of a face a step, to the depth of two: they are in touch all the way, and it is told once. */
 static void test_bodies_pressed_deep_stay_in_touch(void **state) {
     (void)state;
-    const double low[14][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {3, 3},
-                               {3, 4}, {2, 4}, {1, 4}, {0, 4}, {0, 3}, {0, 2}, {0, 1}};
-    surface_body *a = box("upper", 1.2, 4.01, 1.8, 9, 0), *b = surface_polygon("lower", low, 14, false, 1);
+    surface_body *a = box("upper", 1.2, 4.01, 1.8, 9, 0), *b = metres();
     surface_scene s;
     surface_scene_create(&s, a, b, "frictionless", NULL, 0);
     double depth = -0.01;
@@ -454,6 +459,22 @@ static void test_bodies_pressed_deep_stay_in_touch(void **state) {
         near(s.interaction->totals(s.interaction)->penetration, fmin(depth, 1.8), 1e-12); /* deeper, a side is nearer */
     }
     assert_int_equal(told(&s, "more than a face is long"), 1);
+    assert_int_equal(ab_report_warnings(s.plugins.report), 1);
+    surface_scene_destroy(&s);
+}
+
+/* Drawn by more than a face into each other: contact does not see it at first, is told how deep, and has hold of them in the next step. */
+static void test_bodies_drawn_deep_are_held(void **state) {
+    (void)state;
+    surface_body *a = box("upper", 1.2, 2.8, 1.8, 9, 0), *b = metres();
+    for (size_t k = 0; k < 4; k++) a->velocity[2 * k + 1] = a->old[2 * k + 1] = -1;
+    surface_scene s;
+    surface_scene_create(&s, a, b, "frictionless", NULL, 0);
+    surface_scene_solve(&s);
+    s.step.time += s.step.dt;
+    surface_scene_solve(&s);
+    near(s.interaction->totals(s.interaction)->penetration, 1.2, 1e-12);
+    for (size_t k = 0; k < 2; k++) assert_true(surface_body_velocity(a, k)[1] > -0.8); /* they do not fall on as they did */
     assert_int_equal(ab_report_warnings(s.plugins.report), 1);
     surface_scene_destroy(&s);
 }
@@ -504,6 +525,7 @@ int main(void) {
         cmocka_unit_test(test_overlap_is_told_once),
         cmocka_unit_test(test_points_drawn_deep_inside_are_told_by_number_and_depth),
         cmocka_unit_test(test_bodies_pressed_deep_stay_in_touch),
+        cmocka_unit_test(test_bodies_drawn_deep_are_held),
         cmocka_unit_test(test_failures_are_counted),
         cmocka_unit_test(test_bodies_without_faces_are_refused),
     };
