@@ -34,6 +34,7 @@ typedef struct ab_energy {
 
 typedef struct ab_motion {
     double mass, momentum[3], angular_momentum[3], centre[3];
+    double own_inertia; /* kg m2: what points with a spin of their own (affine transfers) have by it, beside their places */
 } ab_motion;
 
 /* A field a domain can write or monitor. Values come in order of id. */

@@ -179,7 +179,7 @@ static ab_status rotation_value(ab_monitors *monitors, monitor *m, const ab_stat
     const double *position, *mass;
     AB_TRY(read_field(monitors, body, view, "position", domain->dimension, &position, report));
     AB_TRY(read_field(monitors, body, view, "mass", 1, &mass, report));
-    double inertia = 0;
+    double inertia = motion->own_inertia;
     for (size_t p = 0; p < count; p++) {
         const double dx = position[p * width] - motion->centre[0], dy = position[p * width + 1] - motion->centre[1];
         inertia += mass[p] * (dx * dx + dy * dy);

@@ -133,6 +133,12 @@ static void take_points(ab_scene_reader *r, const ab_node *const *v, const char 
         ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
                           "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",
                           where);
+    if (body->basis != NULL && body->update != NULL && body->transfer == AB_TRANSFER_TPIC && strcmp(body->basis, "gimp") == 0 &&
+        strcmp(body->update, "usl") == 0) /* slopes at the edge of the body feed the strain that makes them: a bar blows up at any dt */
+        ab_report_error(
+            r->base.report, v[BODY_UPDATE]->mark,
+            "%s: transfer tpic with update usl on basis gimp is unstable at the edge of a body; use update musl or usf, or transfer apic",
+            where);
 }
 
 /* Where the body is at the start: by method a shape, a mesh, or one of them. */

@@ -136,8 +136,8 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
                                      "hold that side (roller, fixed) or say 'outflow' there",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], SIDE[side], x[0] + body->origin[0],
                                      x[1] + body->origin[1], v[0], v[1], step->time + step->dt, step->number);
-        double spin = 0.0;
-        const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1] + mpm_affine_inner(body, slot, &spin));
+        double spin, inertia;
+        const double carried = 0.5 * block[8 * ROW_MASS] * (v[0] * v[0] + v[1] * v[1] + mpm_affine_inner(body, slot, &spin, &inertia));
         body->energy.outflow += carried;
         body->energy.kinetic -= carried; /* which this step's sum holds still */
         body->sort_due = true;
@@ -157,6 +157,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
         motion.mass += s->mass;
         kinetic += s->kinetic;
         motion.angular_momentum[2] += s->angular;
+        motion.own_inertia += s->own_inertia;
         body->energy.potential += s->potential;
         speed2 = fmax(speed2, s->speed2);
         for (int c = 0; c < 2; ++c) {
@@ -324,8 +325,9 @@ static void measure(mpm_body *body) {
         const double *p = mpm_block(body, slot / 8) + slot % 8;
         const double m = p[8 * ROW_MASS], x = p[8 * ROW_X] + body->origin[0], y = p[8 * (ROW_X + 1)] + body->origin[1], vx = p[8 * ROW_V],
                      vy = p[8 * (ROW_V + 1)];
-        double spin = 0.0;
-        body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy + mpm_affine_inner(body, slot, &spin));
+        double spin, inertia;
+        body->energy.kinetic += 0.5 * m * (vx * vx + vy * vy + mpm_affine_inner(body, slot, &spin, &inertia));
+        body->motion.own_inertia += m * inertia;
         body->motion.mass += m;
         body->motion.momentum[0] += m * vx;
         body->motion.momentum[1] += m * vy;

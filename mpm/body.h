@@ -41,6 +41,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
 
 typedef struct mpm_sums {                                 /* of one tile, one step */
     double mass, kinetic, momentum[2], angular, first[2]; /* first: sum m x */
+    double own_inertia;                                   /* sum m tr D of points with an affine part */
     double potential, strain, plastic;                    /* increments */
     double low[2], high[2];                               /* bounds of the new positions */
     double speed2;                                        /* largest v.v */
@@ -177,7 +178,7 @@ void mpm_transfer_choose(mpm_body *);               /* from the scene: before th
 void mpm_filter(mpm_body *);                        /* xpic, fmpm: after contact and damping, before finish */
 void mpm_affine_start(mpm_body *, const ab_fill *); /* the slope of the velocity drawn */
 /* Of the point in a slot, at rows.x: twice the kinetic energy of its affine part, tr(C D C^T) (0 without one), and its angular momentum, per kg. */
-double mpm_affine_inner(const mpm_body *, size_t slot, double *spin);
+double mpm_affine_inner(const mpm_body *, size_t slot, double *spin, double *inertia);
 
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,

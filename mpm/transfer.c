@@ -74,8 +74,8 @@ void mpm_affine_start(mpm_body *body, const ab_fill *fill) {
     }
 }
 
-double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin) {
-    *spin = 0.0;
+double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin, double *inertia) {
+    *spin = *inertia = 0.0;
     if (body->rows.affine < 0) return 0.0;
     const double *block = mpm_block(body, slot / 8), *kept = block + 8 * body->rows.affine + slot % 8;
     double d[2][8], b[4], inner = 0.0;
@@ -86,5 +86,6 @@ double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin) {
         inner += b[c] * (body->moment ? value / spread : value);
     }
     *spin = b[2] - b[1];
+    *inertia = d[0][slot % 8] + d[1][slot % 8];
     return inner;
 }

@@ -77,6 +77,20 @@ extra = set(plastic["bodies"][0]["fields"]) - set(alone["bodies"][0]["fields"])
 assert extra and not any(line.startswith("state:") for line in plastic["not_paid_for"]), extra
 assert plastic["bodies"][0]["bytes_per_point"] > alone["bodies"][0]["bytes_per_point"]
 
+# Transfers: a point carries an affine velocity, four numbers, only with apic and tpic; the filter of xpic and fmpm lies on the nodes, and there only from order 2 on.
+flip = alone["bodies"][0]
+for transfer in ("flip", "pic", "{flip: 0.9}", "{xpic: 1}", "{fmpm: 1}"):
+    body = plan(one, "--set", f"bodies.block.transfer={transfer}")["bodies"][0]
+    assert all(body[key] == flip[key] for key in ("fields", "passes", "bytes", "bytes_per_point")), (transfer, body)
+for transfer in ("apic", "tpic"):
+    body = plan(one, "--set", f"bodies.block.transfer={transfer}")["bodies"][0]
+    assert set(body["fields"]) - set(flip["fields"]) == {"affine velocity"} and body["bytes_per_point"] == flip["bytes_per_point"] + 32, (transfer, body)
+    assert body["passes"] == flip["passes"], (transfer, body)
+for transfer in ("{xpic: 3}", "{fmpm: 3}"):
+    body = plan(one, "--set", f"bodies.block.transfer={transfer}")["bodies"][0]
+    assert body["fields"] == flip["fields"] and body["bytes_per_point"] == flip["bytes_per_point"] and body["bytes"] > flip["bytes"], (transfer, body)
+    assert [p for p in body["passes"] if p not in flip["passes"]] == ["filter of velocities 2 times"], (transfer, body)
+
 # Empty grid: at the corner of the box or in its middle, 16000 x 16000 cells cost what 32 x 16 cost.
 wide = ["--set", "grid.from=[-1999,-1999]", "--set", "grid.to=[2001,2001]"]
 big = plan(one, *wide)

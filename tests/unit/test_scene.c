@@ -128,6 +128,7 @@ static const mistake mistakes[] = {
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: xpic", "'xpic' needs its order; write {xpic: 2}"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {apic: 1}", "unknown key 'apic'"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 2, fmpm: 2}", "bodies.block.transfer needs one of flip, xpic and fmpm, not 2 of them"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: tpic\n    update: usl", "transfer tpic with update usl on basis gimp is unstable"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {}", "bodies.block.transfer needs one of flip, xpic and fmpm, not 0 of them"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {flip: 1.1}", "flip is 1.1 but must be at least 0 and at most 1"},
     {"    fill: {rule: gauss, per_cell: 9}", "    mesh: {}", "bodies.block.mesh belongs to method finite-elements and rigid; leave it out of a body of method material-points"},
@@ -212,6 +213,23 @@ static void test_shapes_and_words_in_their_other_forms(void **state) {
     assert_float_equal(o.scene->bodies[1].flip, 0.9, 0);
     assert_false(o.scene->bodies[1].gravity);
     forget(&o);
+    static const struct {
+        const char *text;
+        ab_transfer transfer;
+        double flip;
+        int order;
+    } transfers[] = {{"flip", AB_TRANSFER_FLIP, 1, 0}, {"pic", AB_TRANSFER_FLIP, 0, 0}, {"apic", AB_TRANSFER_APIC, 0, 0}, {"tpic", AB_TRANSFER_TPIC, 0, 0},
+                     {"{xpic: 3}", AB_TRANSFER_XPIC, 1, 3}, {"{fmpm: 20}", AB_TRANSFER_FMPM, 1, 20}};
+    for (size_t k = 0; k < sizeof transfers / sizeof *transfers; k++) {
+        char text[80];
+        snprintf(text, sizeof text, "    transfer: %s\n", transfers[k].text);
+        o = read_changed("    fill: {rule: gauss, per_cell: 9}\n", text, NULL, 0);
+        assert_int_equal(o.status, AB_OK);
+        assert_int_equal(o.scene->bodies[1].transfer, transfers[k].transfer);
+        assert_float_equal(o.scene->bodies[1].flip, transfers[k].flip, 0);
+        if (transfers[k].order) assert_int_equal(o.scene->bodies[1].order, transfers[k].order);
+        forget(&o);
+    }
     o = read_changed("{box: [[1, 1], [2, 2]]}", "{union: [{polygon: [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]}, {ring: {center: [4, 2], radius: 50 cm, inner: 0.2}}]}", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     const ab_shape_spec *polygon = &o.scene->bodies[1].shape.members[0];

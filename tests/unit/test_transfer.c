@@ -39,8 +39,8 @@ static totals of_points(const mpm_body *body) {
     totals sum = {0};
     for (size_t slot = 0; slot < body->block_count * 8; slot++) {
         if (!is_point(body, slot)) continue;
-        double x[2], v[2], spin;
-        const double m = *point_row(body, slot, ROW_MASS), inner = mpm_affine_inner(body, slot, &spin);
+        double x[2], v[2], spin, inertia;
+        const double m = *point_row(body, slot, ROW_MASS), inner = mpm_affine_inner(body, slot, &spin, &inertia);
         for (int c = 0; c < 2; c++) {
             x[c] = *point_row(body, slot, ROW_X + c) + body->origin[c];
             v[c] = *point_row(body, slot, ROW_V + c);
@@ -72,6 +72,11 @@ static void shuffle(mpm_body *body, double stress, double shift) {
 
 static const char *const basis[] = {"gimp", "linear"}, *const update[] = {"musl", "usf", "usl"};
 
+/* By the scene: it would be unstable. */
+static bool refused(const char *basis_, const char *update_, const char *transfer) {
+    return !strcmp(basis_, "gimp") && !strcmp(update_, "usl") && !strcmp(transfer, "tpic");
+}
+
 /* v = a + C x is what the nodes get, and what the points have after many steps in which they do not move. */
 static void test_an_affine_field_comes_back_as_it_is(void **state) {
     (void)state;
@@ -80,6 +85,7 @@ static void test_an_affine_field_comes_back_as_it_is(void **state) {
     for (int b = 0; b < 2; b++)
         for (int u = 0; u < 3; u++)
             for (int t = 0; t < 2; t++) {
+                if (refused(basis[b], update[u], transfer[t])) continue;
                 one_body *one = one_body_create(scene(1e-3, basis[b], update[u], transfer[t],
                                                       "velocity: [\"0.5 + 0.3*x - 1.7*y\", \"-2 + 0.9*x + 0.4*y\"], fill: {rule: gauss}"),
                                                 1);
@@ -127,6 +133,7 @@ static void test_momenta_go_to_the_nodes_and_back(void **state) {
     for (int b = 0; b < 2; b++)
         for (int u = 0; u < 3; u++)
             for (int t = 0; t < 6; t++) {
+                if (refused(basis[b], update[u], transfer[t])) continue;
                 one_body *one = one_body_create(scene(1e-3, basis[b], update[u], transfer[t], "velocity: [1, 0]"), 1);
                 mpm_body *body = one->mpm;
                 shuffle(body, 1, b == 0 ? 0.1 : 0.2);
@@ -263,7 +270,7 @@ static void test_no_transfer_makes_energy(void **state) {
     static const char *const transfer[] = {"pic", "{flip: 0.9}", "apic", "tpic", "{xpic: 2}", "{xpic: 5}", "{fmpm: 2}", "{fmpm: 5}"};
     for (int b = 0; b < 2; b++)
         for (int t = 0; t < 8; t++) {
-            one_body *one = one_body_create(scene(1e-3, basis[b], "usl", transfer[t], "velocity: [1, 0]"), 1);
+            one_body *one = one_body_create(scene(1e-3, basis[b], "musl", transfer[t], "velocity: [1, 0]"), 1);
             shuffle(one->mpm, 0, 0.1);
             one->step.dt = 1e-12;
             double before = of_points(one->mpm).kinetic, first = before, worst = 0;
