@@ -22,7 +22,7 @@ enum { CLOSED, NEWTON };
 enum { BOTH, FIRST, SECOND };
 enum { MOST_SLOTS = 4 };
 static const double NEAR = 0.03; /* of a cell: given out although the bodies do not meet in this step */
-static const double BENT = 1e-3; /* bow of a face over its length: more is a round body, less what a flat one is bent by */
+static const double BENT = 1e-4; /* bow of a face over its length: more is a round body, less what a flat one is bent by */
 
 static const ab_param PARAMS[] = {
     {"half_size", "1", "part of a material point's half size that belongs to the body: 1 its whole domain, 0 its centre alone", NULL,

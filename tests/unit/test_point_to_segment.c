@@ -232,7 +232,7 @@ static void closest(bool quadratic) {
     }
     print_message("%s faces: %zu places outside, %zu inside, %zu behind concave corners; worst distance off by %.1e\n",
                   quadratic ? "quadratic" : "straight", outside, inside, corners, worst);
-    assert_true(outside + inside + corners > 90000 && inside > 10000);
+    assert_true(outside + inside + corners > 9 * OUTLINES * PLACES / 10 && inside > OUTLINES * PLACES / 10);
     assert_true(corners < inside / 2);
     assert_true(worst <= 1e-7);
     finder_close(&f);
