@@ -290,7 +290,9 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)
-            pair->points.states += spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1;
+            for (int row = spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1; row > 0; --row, ++pair->points.states)
+                if (!pair->points.surfaces && spec->responder->class_.state[s].travel == AB_SUM && pair->points.states - HISTORY < 64)
+                    pair->points.sums.rows |= (uint64_t)1 << (pair->points.states - HISTORY);
         status = contact_can_find(pair, report);
         if (status == AB_OK && pair->points.surfaces) status = contact_broad_create(scene, pair, report);
         if (status == AB_OK) status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);

@@ -13,6 +13,16 @@ ab_status contact_create(const ab_scene *, ab_domain **, ab_interaction **, ab_r
 enum { HISTORY_STATUS, HISTORY_NORMAL, HISTORY_TANGENTIAL, HISTORY_FORCE, HISTORY_FRICTION, HISTORY_STRAIN, HISTORY_SHEAR, HISTORY };
 enum { STATUS_FREE, STATUS_NORMAL, STATUS_BOTH };
 
+/* share.c: states of the response that are sums, and what it takes to share them out among points that come and go */
+typedef struct contact_sums {
+    uint64_t rows;     /* bit r: row r of the states is a sum; 0 with points from surfaces, which go with their body */
+    double *old_place; /* m, of the points of the last step, two each, in the order of old_key */
+    uint32_t *now;     /* by point of the last step: which one it is now, UINT32_MAX: none */
+    struct contact_cell *cell;
+    double *weight, *around; /* of each point; of all in the cells around it */
+    size_t capacity;
+} contact_sums;
+
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
     ab_points view;              /* what plugins see */
@@ -28,6 +38,7 @@ typedef struct contact_points {
     uint64_t *old_key; /* of the last step, ascending, with their states: history */
     double *old_state;
     size_t old_count, old_capacity;
+    contact_sums sums;
     uint32_t *seen; /* by dof: the last look for shared dofs that met it */
     size_t seen_capacity;
     uint32_t look; /* number of the last one */
@@ -104,6 +115,10 @@ void contact_watch_depth(contact_pair *, ab_report *);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);
+
+/* share.c */
+bool contact_share_sums(contact_points *); /* into state0, from the states of the last step; false: no memory */
+void contact_sums_destroy(contact_sums *);
 
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */

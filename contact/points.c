@@ -64,6 +64,7 @@ void contact_points_destroy(contact_points *points) {
     free(points->applied), free(points->change), free(points->direction), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
     free(points->seen);
+    contact_sums_destroy(&points->sums);
 }
 
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
@@ -103,10 +104,12 @@ static int shares_dofs(contact_points *points, const size_t *start, const uint32
     return 0;
 }
 
-/* Brings the states of points that were there in the last step (same key) into state0; new ones begin at 0. */
-static void recall(contact_points *points) {
+/* Brings the states of points that were there in the last step (same key) into state0; new ones begin at 0, but for their share of what is a sum. */
+static bool recall(contact_points *points) {
     ab_points *v = &points->view;
     double *state0 = (double *)(uintptr_t)v->state0;
+    uint32_t *now = points->sums.rows ? points->sums.now : NULL;
+    for (size_t j = 0; now && j < points->old_count; ++j) now[j] = UINT32_MAX;
     for (size_t i = 0; i < v->count; ++i) {
         size_t low = 0, high = points->old_count;
         while (low < high) {
@@ -118,7 +121,9 @@ static void recall(contact_points *points) {
         }
         const bool known = low < points->old_count && points->old_key[low] == v->key[i];
         for (size_t s = 0; s < points->states; ++s) state0[s * v->ld + i] = known ? points->old_state[s * points->old_capacity + low] : 0.0;
+        if (now && known) now[low] = (uint32_t)i;
     }
+    return contact_share_sums(points);
 }
 
 typedef struct remembered {
@@ -141,14 +146,17 @@ void contact_points_remember(contact_points *points) {
     for (size_t i = 0; i < v->count; ++i) list[i] = (remembered){v->key[i], (uint32_t)i};
     qsort(list, v->count, sizeof *list, compare_remembered);
     if (v->count > points->old_capacity || !points->old_key) {
-        free(points->old_key), free(points->old_state);
+        free(points->old_key), free(points->old_state), free(points->sums.old_place), free(points->sums.now);
         points->old_capacity = v->capacity;
         points->old_key = malloc(points->old_capacity * sizeof *points->old_key);
         points->old_state = malloc(points->old_capacity * points->states * sizeof *points->old_state);
+        points->sums.old_place = malloc(2 * points->old_capacity * sizeof *points->sums.old_place);
+        points->sums.now = malloc(points->old_capacity * sizeof *points->sums.now);
     }
-    points->old_count = points->old_key && points->old_state ? v->count : 0;
+    points->old_count = points->old_key && points->old_state && points->sums.old_place && points->sums.now ? v->count : 0;
     for (size_t k = 0; k < points->old_count; ++k) {
         points->old_key[k] = list[k].key;
+        for (size_t c = 0; c < 2; ++c) points->sums.old_place[2 * k + c] = v->position[c * v->ld + list[k].point];
         for (size_t s = 0; s < points->states; ++s) points->old_state[s * points->old_capacity + k] = v->state1[s * v->ld + list[k].point];
     }
     free(list);
@@ -181,6 +189,5 @@ bool contact_points_prepare(contact_points *points, const contact_side side[2]) 
     if (shared_a < 0 || shared_b < 0) return false;
     points->shared = shared_a || shared_b;
     points->held = held;
-    recall(points);
-    return true;
+    return recall(points);
 }

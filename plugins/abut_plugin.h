@@ -88,7 +88,9 @@ typedef struct ab_value { /* one per ab_param, in its order */
 /* ---- state: what the host keeps for the plugin, per material point, Gauss point or contact point ---------------------- */
 
 enum ab_shape { AB_SCALAR = 1, AB_VECTOR, AB_SYMMETRIC, AB_FULL }; /* how it turns with the material; symmetric: as stress */
-enum ab_travel { AB_COPY = 1, AB_AVERAGE, AB_SUM };                /* when points are split or merged */
+/* When points are split or merged. Contact points on shared nodes come and go while bodies slide: an AB_SUM is shared out in every step among points in cells
+ * beside each other, in proportion to area x gap^2 where the gap is negative; it is not lost as long as one of them overlaps. */
+enum ab_travel { AB_COPY = 1, AB_AVERAGE, AB_SUM };
 
 typedef struct ab_state {
     const char *name, *unit, *help;
