@@ -226,7 +226,7 @@ static inline void default_settings(const ab_loaded_class *class_, ab_value *val
     for (uint32_t k = 0; k < class_->class_.nparam; k++) {
         const ab_param *param = class_->class_.param + k;
         const double number = name && !strcmp(param->name, name) ? given : param->initial;
-        value[k] = (ab_value){.real = number, .integer = (int64_t)number};
+        value[k] = (ab_value){.real = number, .integer = isfinite(number) ? (int64_t)number : 0};
     }
 }
 
