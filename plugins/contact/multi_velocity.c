@@ -195,10 +195,10 @@ typedef struct clearance {
     double angle, distance, slope;
 } clearance; /* rad, m, m per rad */
 
-/* Distance along direction `angle` between the material of both bodies near node i (negative: overlap) and how it changes with the angle: what the two points
- * that reach furthest say. Over all directions the largest distance belongs to the direction of closest approach. Two dimensions. */
-static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, double angle) {
-    const double c = cos(angle), s = sin(angle);
+/* Distance along direction (c, s) at `angle` between the material of both bodies near node i (negative: overlap) and how it changes with the angle: what the two
+ * points that reach furthest say. Over all directions the largest distance belongs to the direction of closest approach. Two dimensions. */
+static clearance look_towards(const ab_trace *a, const ab_trace *b, size_t i, double angle, double c, double s) {
+    const double cc = c * c, ss = s * s, cs = 2.0 * c * s;
     clearance seen = {.angle = angle};
     for (int side = 0; side < 2; ++side) {
         const ab_trace *t = side ? b : a;
@@ -207,15 +207,20 @@ static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, doub
         double far = -INFINITY;
         size_t furthest = t->near_start[i];
         for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
-            const double reaches = sign * (x[k] * c + y[k] * s) + sqrt(larger(c * c * xx[k] + s * s * yy[k] + 2.0 * c * s * xy[k], 0.0));
-            if (reaches > far) far = reaches, furthest = k;
+            const double along = sign * (x[k] * c + y[k] * s), square = cc * xx[k] + ss * yy[k] + cs * xy[k], left = far - along;
+            if (left >= 0.0 && left * left >= square) continue; /* it does not reach as far: most do not, and need no root */
+            far = along + sqrt(larger(square, 0.0)), furthest = k;
         }
         const size_t k = furthest;
-        const double half = sqrt(larger(c * c * xx[k] + s * s * yy[k] + 2.0 * c * s * xy[k], 0.0));
+        const double half = sqrt(larger(cc * xx[k] + ss * yy[k] + cs * xy[k], 0.0));
         seen.distance -= far;
-        seen.slope -= sign * (y[k] * c - x[k] * s) + (half > 0.0 ? (c * s * (yy[k] - xx[k]) + (c * c - s * s) * xy[k]) / half : 0.0);
+        seen.slope -= sign * (y[k] * c - x[k] * s) + (half > 0.0 ? (c * s * (yy[k] - xx[k]) + (cc - ss) * xy[k]) / half : 0.0);
     }
     return seen;
+}
+
+static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, double angle) {
+    return look_towards(a, b, i, angle, cos(angle), sin(angle));
 }
 
 /* The largest distance near a direction: uphill until the slope turns, then to where the tangents of both ends meet, until the distance there is what they
@@ -242,12 +247,13 @@ static clearance climb(const ab_trace *a, const ab_trace *b, size_t i, clearance
     return best;
 }
 
-static const double TOUCH = 0.01; /* of a cell */
+static const double TOUCH = 0.01, APART = 0.5; /* of a cell */
+static const double CORNER = 0.866;            /* cosine between two normals that lean by more than a face does */
 
 /* The direction of closest approach, out of a, from the best of three guesses (cosine and sine each). On a face it is the face's normal to rounding, also where
  * the other body shows only an edge or a single point. Of bodies that are apart the distance has one maximum over all directions; below zero there may be
- * others, as at a corner that faces along the other body. So where they seem to overlap every direction is asked whether they are apart, or all but touch. */
-static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], double n[3]) {
+ * others, as at a corner that faces along the other body. So at a corner where they seem to overlap every direction is asked whether they are apart, or all but touch. */
+static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, const double guess[3][2], int corner, double n[3]) {
     static const double PI = 3.141592653589793;
     enum { DIRECTIONS = 24 };
     clearance begin = {.distance = -INFINITY};
@@ -255,8 +261,8 @@ static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, con
         const clearance seen = look_along(a, b, i, atan2(guess[k][1], guess[k][0]));
         if (seen.distance > begin.distance) begin = seen;
     }
-    clearance found = climb(a, b, i, begin);
-    if (found.distance < 0.0) {
+    clearance found = begin.distance > APART * a->cell ? begin : climb(a, b, i, begin);
+    if (corner && found.distance < 0.0) {
         begin = found;
         for (int k = 0; k < DIRECTIONS; ++k) {
             const clearance seen = look_along(a, b, i, 2.0 * PI * k / DIRECTIONS);
@@ -303,7 +309,7 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     }
     for (uint32_t c = 0; c < d; ++c) n[c] = b->mass[i] * a->mass_gradient[c * a->ld + i] - a->mass[i] * b->mass_gradient[c * b->ld + i];
     const double guess[3][2] = {{n[0], n[1]}, {na[0], na[1]}, {-nb[0], -nb[1]}};
-    if (d == 2) closest_approach(a, b, i, guess, n);
+    if (d == 2) closest_approach(a, b, i, guess, cosine < CORNER, n);
 }
 
 /* Distance of the two bodies' material at shared node i, m. A normal from one gradient alone may lean where a body ends; the distance along it would then be
