@@ -2,6 +2,7 @@
  * impulse, effective mass. A body that turns as a whole has velocity v + spin x r, r from its centre to the point, and an impulse j changes its spin by r x j over
  * its moment of inertia. */
 #include "contact/contact.h"
+#include "core/vector.h"
 
 void contact_sides(const contact_pair *pair, contact_side side[2]) {
     const ab_points *p = &pair->points.view;
@@ -81,15 +82,22 @@ void contact_push(const contact_side side[2], size_t i, const double j[2]) {
     }
 }
 
+/* What is held moves nowhere: a point at a held node, but for rounding, would see a mass of 1e20 in the node beside it. */
+static const double HELD = 1e-12; /* of what it would be if nothing were held */
+
 double contact_inverse_mass(const contact_side side[2], size_t i, const double d[2], bool *held) {
-    double sum = 0.0;
+    double sum = 0.0, loose = 0.0;
     for (int k = 0; k < 2; ++k) {
         const contact_side *s = side + k;
+        double weights = 0.0, largest = 0.0;
         for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
             const double *m = s->dofs.inverse_mass + (size_t)s->dof[e] * s->dofs.mass_stride, w = s->weight[e];
             sum += w * w * (d[0] * d[0] * m[0] + d[1] * d[1] * m[1]);
+            weights += w * w;
+            largest = ab_larger(largest, ab_larger(m[0], m[1]));
             if (m[0] != m[1]) *held = true;
         }
+        loose += weights * largest;
         if (s->dofs.spin) {
             double r[2];
             arm(s, i, r);
@@ -97,7 +105,7 @@ double contact_inverse_mass(const contact_side side[2], size_t i, const double d
             sum += turned * turned * s->dofs.inverse_inertia;
         }
     }
-    return sum;
+    return sum > HELD * loose ? sum : 0.0;
 }
 
 double contact_coupling(const contact_side side[2], size_t i, const double n[2], bool turns) {
