@@ -83,21 +83,23 @@ void contact_push(const contact_side side[2], size_t i, const double j[2]) {
 }
 
 /* What is held moves nowhere: a point at a held node, but for rounding, would see a mass of 1e20 in the node beside it. */
-static const double HELD = 1e-12; /* of what it would be if nothing were held */
+static const double HELD = 1e-12; /* of the weights, squared; of what a dof would be if it were not held */
 
 double contact_inverse_mass(const contact_side side[2], size_t i, const double d[2], bool *held) {
-    double sum = 0.0, loose = 0.0;
+    double sum = 0.0;
     for (int k = 0; k < 2; ++k) {
         const contact_side *s = side + k;
-        double weights = 0.0, largest = 0.0;
+        double of_side = 0.0, weights = 0.0, loose = 0.0;
         for (size_t e = s->start[i]; e < s->start[i + 1]; ++e) {
-            const double *m = s->dofs.inverse_mass + (size_t)s->dof[e] * s->dofs.mass_stride, w = s->weight[e];
-            sum += w * w * (d[0] * d[0] * m[0] + d[1] * d[1] * m[1]);
-            weights += w * w;
-            largest = ab_larger(largest, ab_larger(m[0], m[1]));
+            const double *m = s->dofs.inverse_mass + (size_t)s->dof[e] * s->dofs.mass_stride, w2 = s->weight[e] * s->weight[e];
+            const double along = d[0] * d[0] * m[0] + d[1] * d[1] * m[1];
+            weights += w2;
             if (m[0] != m[1]) *held = true;
+            if (!(along > HELD * ab_larger(m[0], m[1]))) continue;
+            of_side += w2 * along;
+            loose += w2;
         }
-        loose += weights * largest;
+        if (loose > HELD * weights) sum += of_side;
         if (s->dofs.spin) {
             double r[2];
             arm(s, i, r);
@@ -105,7 +107,7 @@ double contact_inverse_mass(const contact_side side[2], size_t i, const double d
             sum += turned * turned * s->dofs.inverse_inertia;
         }
     }
-    return sum > HELD * loose ? sum : 0.0;
+    return sum;
 }
 
 double contact_coupling(const contact_side side[2], size_t i, const double n[2], bool turns) {

@@ -56,6 +56,9 @@ static void test_a_share_of_each_node(void **state) {
         assert_true(held);
         held = false;
     }
+    /* a node with next to no mass hides nobody else's */
+    const contact_side *side = at(&p, 1e-8, FREE, (const double[2]){1e20, 1e20}, FREE);
+    assert_true(fabs(contact_inverse_mass(side, 0, X, &held) - (1e4 + 4.0)) < 1e-6);
 }
 
 /* Corners of two bodies on a roller, face to face: the foot of one on the other's face is the corner but for rounding. */
