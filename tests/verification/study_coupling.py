@@ -66,6 +66,9 @@ def impact_rows():
                                 settings[f"bodies.{body}.mesh.type"] = element
                     if response == "distance-power" and finder == "multi-velocity":
                         settings["contact[0].gap"] = "none"
+                    if response == "tied":  # it ties from a hundredth of a cell on, which at this speed is an eighth of the duration early; and ends as early
+                        settings["expect[1].to"] = "meet + 0.75*lasts"
+                        settings["monitors[2].value"] = "force.x"  # the sum; points that are tied may pull at each other
                     summary = run(f"tests/verification/{scene}.yaml", settings)
                     if isinstance(summary, str):
                         rows.append([pair, element, finder, response, summary, "", "", "", "", ""])
@@ -102,7 +105,9 @@ def beam_rows():
                 rest = summary["ledger"]["remainder_relative"]
                 if rest > 0.02 or (response in ("frictionless", "coulomb") and rest < -0.02):
                     failures.append(f"beam {element} {finder} {response}: the ledger is off by {100 * rest:.2g} %")
-                if response in ("frictionless", "coulomb") and (deepest is None or abs(deepest / -0.1373 - 1) > (0.1 if element == "q4" else 0.05)):
+                # two layers of square q4 with nu = 0 are too stiff in bending by 3/4 + 1/4 (1 + 1/2) = 1.125: each layer bends half as stiffly again as it should
+                lowest = -0.1373 / (1.125 if element == "q4" else 1)
+                if response in ("frictionless", "coulomb") and (deepest is None or abs(deepest / lowest - 1) > 0.05):
                     failures.append(f"beam {element} {finder} {response}: the tip sinks by {deepest} m")
                 rows.append([element, finder, response, str(summary["steps"]), "-" if deepest is None else f"{deepest:.3g}",
                              "-" if left is None else f"{left:.3g}", percent(rest),
