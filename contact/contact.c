@@ -287,6 +287,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.view.dimension = 2;
         pair->points.view.density = softer_density(scene, pair);
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
+        pair->points.view.fixed_places = (spec->responder->class_.needs & AB_NEED_FIXED_PLACES) != 0;
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)

@@ -11,13 +11,16 @@
 #include "contact/contact.h"
 #include "core/vector.h"
 
-enum { MOST_ROUNDS = 400, PATIENCE = 6, PLAIN = 8 }; /* the first rounds are often enough */
+enum { MOST_ROUNDS = 400, PATIENCE = 6, MOST_PATIENCE = 60, PLAIN = 8 }; /* the first rounds are often enough */
 /* Change of an impulse against the largest one of the stage. The kinematic stage's impulses move nothing: they put right what the remap has made of the velocities
  * at contact points, and what they leave undone is a part of that. */
 static const double STANDSTILL[] = {[AB_STAGE_DYNAMIC] = 1e-13, [AB_STAGE_KINEMATIC] = 1e-2};
 static const double PROGRESS = 0.9; /* PATIENCE rounds must bring the change down to this part of what it was */
+/* Bodies that are held together share one motion along their seam, which takes many rounds to find, and what is left of the rest does work: MOST_PATIENCE then. */
+static const double LITTLE_PROGRESS = 0.99;
 
 typedef struct progress {
+    bool pulls; /* some point pulls */
     double change2, largest2,
         square; /* N2 s2: squares of the largest change of an impulse in a round and of the largest impulse, sum of squared changes */
 } progress;
@@ -54,6 +57,7 @@ static void apply(contact_pair *pair, const contact_side side[2], size_t i, prog
         pair->points.change[k] = j[c];
     }
     const double jx = p->impulse[i], jy = p->impulse[p->ld + i];
+    so_far->pulls = so_far->pulls || jx * p->normal[i] + jy * p->normal[p->ld + i] < 0.0;
     so_far->largest2 = ab_larger(so_far->largest2, jx * jx + jy * jy);
     if (j[0] == 0.0 && j[1] == 0.0) return;
     const double square = j[0] * j[0] + j[1] * j[1];
@@ -110,11 +114,12 @@ static void go_on(contact_pair *pair, const contact_side side[2], double part) {
 
 ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool answered, ab_report *report) {
     size_t active = 0;
-    bool again = false;
+    bool again = false, holds = false;
     for (size_t k = 0; k < count; ++k) {
         if (!pairs[k].points.view.count) continue;
         ++active;
         again = again || pairs[k].points.shared || pairs[k].points.held;
+        holds = holds || pairs[k].points.view.fixed_places;
     }
     again = again || active > 1;
     double square = 0.0, least = INFINITY;
@@ -131,8 +136,9 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
             AB_TRY(round_over(pair, side, history, &so_far, report));
         }
         const double change = sqrt(so_far.change2), largest = sqrt(so_far.largest2);
-        if (change < PROGRESS * least) least = change, since = 0;
-        if (!again || change <= STANDSTILL[stage] * largest || ++since > PATIENCE) break;
+        if (stage == AB_STAGE_DYNAMIC) holds = holds || so_far.pulls;
+        if (change < (holds ? LITTLE_PROGRESS : PROGRESS) * least) least = change, since = 0;
+        if (!again || change <= STANDSTILL[stage] * largest || ++since > (holds ? MOST_PATIENCE : PATIENCE)) break;
         const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;
         square = so_far.square;
         for (size_t k = 0; k < count && round >= PLAIN && round + 1 < MOST_ROUNDS; ++k) {

@@ -20,7 +20,8 @@ static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradien
                              {AB_NEED_NEAR_POINTS, "points near the node"},
                              {AB_NEED_SURFACE, "points and faces of surfaces"},
                              {AB_NEED_DISTANCE, "distance from the stiffer body"},
-                             {AB_NEED_GAP, "gap"}};
+                             {AB_NEED_GAP, "gap"},
+                             {AB_NEED_FIXED_PLACES, "fixed places"}};
 static const word gives[] = {{AB_GIVE_STRESS, "stress"},
                              {AB_GIVE_DISSIPATION, "dissipation"},
                              {AB_GIVE_WAVE_SPEED, "wave speed"},

@@ -125,7 +125,8 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     AB_NEED_NEAR_POINTS = 128u,
     AB_NEED_SURFACE = 256u, /* trace->surface: points of one body and the faces of the other near them (since 1.1) */
     AB_NEED_DISTANCE = 512u, /* responses: points->distance (since 1.1) */
-    AB_NEED_GAP = 1024u      /* responses: a points->gap that is known: not that of a finder with the setting gap: none (since 1.1) */
+    AB_NEED_GAP = 1024u,     /* responses: a points->gap that is known: not that of a finder with the setting gap: none (since 1.1) */
+    AB_NEED_FIXED_PLACES = 2048u /* responses: contact points that stay where they are on the bodies: points->fixed_places (since 1.1) */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,
@@ -266,6 +267,8 @@ typedef struct ab_points {
     double density;    /* kg/m3: of the body that modulus is of; 0 where it has none (rigid) */
     const double *relative_velocity_old; /* m/s, dimension rows: at the start of the step. The work that an impulse takes from the bodies is the impulse
                                             times the mean of this and of what relative_velocity ends at */
+    int fixed_places; /* 1: a finder keeps its points where they are on the bodies (a response that holds them asked for it); 0: it may follow the place where
+                         round bodies touch, which moves along them as they roll */
 } ab_points;
 
 typedef struct ab_contact_ops {

@@ -29,7 +29,9 @@ static const ab_param PARAMS[] = {
      "coefficient of friction of a point that slips, at most friction, which then is that of a point that sticks; without it: the same as "
      "friction",
      NULL, AB_REAL, 0, INFINITY, 0.0, INFINITY},
-    {"recovery", "1", "steps in which bodies that overlap are pushed apart again (what that takes is booked as contact loss < 0); 0: never",
+    {"recovery", "1",
+     "steps in which bodies that overlap are pushed apart again, by 2e-4 of a cell in a step at most (what that takes is booked as contact "
+     "loss < 0); 0: never",
      NULL, AB_REAL, 0, 0.0, 0.0, INFINITY},
 };
 
@@ -63,6 +65,8 @@ static void destroy(void *self) {
 
 static const double TOUCH =
     1e-3; /* of a cell: bodies no further apart touch, for adhesion and tension; gaps are no better known than this */
+static const double AT_ONCE =
+    2e-4; /* of a cell: no more of an overlap is taken back in a step, as it pushes with the speed that this needs */
 static const double AT_LIMIT = 1e-5; /* of the limit: less beyond it is no slip, but what the rounds over many points have left undecided */
 
 static int respond(void *self, ab_points *p, size_t first, size_t count) {
@@ -77,8 +81,12 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
         const double gap = p->gap[i], area_dt = p->area[i] * p->dt;
         const int touching = gap <= TOUCH * p->cell;
         const double tension = touching ? law->tensile_strength * area_dt : 0.0;
-        const double leave = gap >= 0.0 ? gap / p->dt : law->recovery > 0.0 ? gap / (larger(law->recovery, 1.0) * p->dt) : 0.0;
-        const double lambda = larger(-tension, normal_impulse + p->normal_mass[i] * (approach - leave));
+        const double leave = gap >= 0.0            ? gap / p->dt
+                             : law->recovery > 0.0 ? -smaller(-gap / larger(law->recovery, 1.0), AT_ONCE * p->cell) / p->dt
+                                                   : 0.0;
+        /* A push ends approach beyond the gap; a pull ends separation and no more: what is open stays open, or closing it would make energy. */
+        double lambda = larger(0.0, normal_impulse + p->normal_mass[i] * (approach - leave));
+        if (lambda == 0.0 && tension > 0.0) lambda = larger(-tension, smaller(0.0, normal_impulse + p->normal_mass[i] * approach));
         const double friction = law->weakens && p->state0[i] > 0.5 ? law->kinetic : law->friction;
         double limit = friction * larger(lambda, 0.0) + (touching ? law->adhesion * area_dt : 0.0);
         if (law->shear_cap > 0.0) limit = smaller(limit, law->shear_cap * area_dt);

@@ -199,7 +199,10 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
                 const double friction = law->weakens && p->state0[(d + STATE_SLIPS) * ld + i] > 0.5 ? law->kinetic : law->friction;
                 slip_spring(law, p, i, kt, friction * lambda, across, impulse);
             }
-        } else
+        } else if (depth > 0.0 && law->of == OF_MODULUS)
+            lambda = dt * normal_stiffness(law, p, i) *
+                     depth; /* both sides are held or driven: nothing swings, and the force is what holds them */
+        else
             lambda = 0.0;
         for (size_t c = 0; c < d; ++c) p->impulse[c * ld + i] = lambda * p->normal[c * ld + i] + impulse[c];
     }

@@ -36,6 +36,8 @@ static const ab_param PARAMS[] = {
 typedef struct remembered { /* a contact point of the last step */
     uint64_t key;
     double normal[2];
+    uint32_t face; /* where on the other body it touched */
+    double xi, gap;
 } remembered;
 
 typedef struct placed { /* where a contact point of this step lies, for its area */
@@ -128,7 +130,7 @@ static uint32_t take_slot(const segments *self, uint64_t base, const double n[2]
 
 /* Where a body is round it touches between its vertices. The middle vertex of a bent face stands for the place of that face which reaches furthest towards the
  * other body, where the slope has no part along the normal: r'.n = 0. It moves along the face, and at its end the next face's takes over with the same gap, so that
- * a round body rolls as one and not from vertex to vertex. Looks again from there; *own_xi: where it is on its own face. */
+ * a round body rolls as one and not from vertex to vertex. (Not where a response holds the bodies together: a hold that moved along them under load would make energy.) Looks again from there; *own_xi: where it is on its own face. */
 static int look_from_round_face(const pass *p, size_t i, uint32_t vertex, hit *h, double *own_xi) {
     enum { TIMES = 4 };
     const uint32_t *around = p->around + 2 * (size_t)vertex;
@@ -242,6 +244,26 @@ static double half_size(const ab_surface *s, size_t i, const double n[2]) {
     return sqrt(larger(0.0, n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]));
 }
 
+static const double HOLDS = 0.012, /* of a cell: bodies that a response holds together (tied, from 0.01 on) are no further apart */
+    AWAY = 0.5;                    /* of a face: where a place is not the same any more, as when an outline was drawn anew */
+
+/* The place that a point held on to in the last step, in place of the closest one: a hold that follows the closest place, as that moves along the faces of bodies that
+ * bend and turn, does work on them. */
+static void hold_place(const pass *p, size_t i, uint64_t key, hit *h) {
+    const remembered *was = recall(p->self, key);
+    if (!was || !(was->gap <= HOLDS * p->out->cell) || was->face >= p->faces->face_count) return;
+    hit held = {.face = was->face, .xi = was->xi};
+    curve c;
+    if (!curve_of(p->faces, was->face, &c) || !normal_at(&c, was->xi, held.normal)) return;
+    place_of(&c, was->xi, held.x);
+    const double *t = p->points->point_position + i, from_closest[2] = {held.x[0] - h->x[0], held.x[1] - h->x[1]},
+                 r[2] = {t[0] - held.x[0], t[p->points->point_ld] - held.x[1]};
+    if (dot(from_closest, from_closest) > AWAY * AWAY * c.length * c.length || dot(held.normal, h->normal) < SAME_WAY) return;
+    held.signed_distance = dot(held.normal, r);
+    held.distance = sqrt(dot(r, r));
+    *h = held;
+}
+
 static int contact_of_point(const pass *p, size_t i, hits *all) {
     const ab_surface *s = p->points;
     const double t[2] = {s->point_position[i], s->point_position[s->point_ld + i]};
@@ -252,7 +274,8 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
     choose(p->faces, vertex == UINT32_MAX ? NULL : s, vertex == UINT32_MAX ? NULL : p->around + 2 * (size_t)vertex, vertex, all);
     double gap[MOST_HITS], own_xi[MOST_HITS];
     int round_[MOST_HITS] = {0};
-    for (size_t k = 0; vertex != UINT32_MAX && k < all->count; ++k) round_[k] = look_from_round_face(p, i, vertex, all->of + k, own_xi + k);
+    for (size_t k = 0; vertex != UINT32_MAX && !p->out->fixed_places && k < all->count; ++k)
+        round_[k] = look_from_round_face(p, i, vertex, all->of + k, own_xi + k);
     for (size_t k = 0; k < all->count; ++k) gap[k] = all->of[k].signed_distance - p->self->half_size * half_size(s, i, all->of[k].normal);
     const uint64_t base = s->point_key[i] << 3 | (uint64_t)p->number << 2;
     unsigned taken = 0;
@@ -261,12 +284,14 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
         for (size_t k = 0; k < all->count; ++k)
             if (gap[k] <= p->reach && (least == MOST_HITS || gap[k] < gap[least])) least = k;
         if (least == MOST_HITS) break;
-        const hit h = all->of[least];
+        hit h = all->of[least];
+        if (p->out->fixed_places) hold_place(p, i, base, &h);
         const double half = half_size(s, i, h.normal), width = s->point_area[i],
                      part = vertex == UINT32_MAX ? 1.0 : part_along(s, p->around + 2 * (size_t)vertex, vertex, h.normal),
                      area = half > 0.0 ? width * width / (2.0 * half) : width * part;
         const uint32_t own_face = round_[least] ? p->around[2 * (size_t)vertex] : UINT32_MAX;
-        if (!emit(p, i, &h, own_face, own_xi[least], gap[least], area, base | take_slot(p->self, base, h.normal, &taken))) return 0;
+        const double open = p->out->fixed_places ? h.signed_distance - p->self->half_size * half : gap[least];
+        if (!emit(p, i, &h, own_face, own_xi[least], open, area, base | take_slot(p->self, base, h.normal, &taken))) return 0;
         for (size_t k = 0; k < all->count; ++k)
             if (dot(all->of[k].normal, h.normal) > SAME_WAY) gap[k] = INFINITY;
     }
@@ -315,7 +340,8 @@ static int remember(segments *self, const ab_points *out) {
     if (!room(self->host, &self->before, &self->before_bytes, (out->count + 1) * sizeof *self->before)) return 0;
     for (size_t n = 0; n < out->count; ++n) {
         const double sign = self->placed[n].pass == 0 ? -1.0 : 1.0;
-        self->before[n] = (remembered){out->key[n], {sign * out->normal[n], sign * out->normal[out->ld + n]}};
+        self->before[n] = (remembered){
+            out->key[n], {sign * out->normal[n], sign * out->normal[out->ld + n]}, self->placed[n].face, self->placed[n].xi, out->gap[n]};
     }
     self->before_count = out->count;
     qsort(self->before, out->count, sizeof *self->before, compare_keys);

@@ -58,6 +58,7 @@ static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
     .kind = AB_CONTACT,
     .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .needs = AB_NEED_FIXED_PLACES,
     .gives = AB_GIVE_IMPULSE,
     .nparam = sizeof PARAMS / sizeof *PARAMS,
     .nstate = 1,

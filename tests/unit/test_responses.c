@@ -260,6 +260,52 @@ static void test_turned_points_give_turned_answers(void **state) {
     }
 }
 
+/* ---- coulomb ----------------------------------------------------------------------------------------------------------------------- */
+
+/* An overlap is taken back within `recovery` steps where it is slight, by 2e-4 of a cell a step where it is deep: a corner that reaches a new node is not thrown. */
+static void test_coulomb_takes_an_overlap_back_slowly(void **state) {
+    (void)state;
+    static const setting four[] = {{"recovery", 4}};
+    bench *b = open_bench("coulomb");
+    assert_int_equal(create(b, four, 1), 0);
+    static const double deep[] = {1e-6, 1e-4, 1e-3, 0.4}; /* cells */
+    for (size_t k = 0; k < sizeof deep / sizeof *deep; k++) {
+        scramble(b, 2);
+        b->points.count = 1;
+        b->gap[0] = -deep[k] * b->points.cell;
+        b->velocity[0] = b->velocity[MOST] = 0;
+        respond(b);
+        const double way = fmin(deep[k] / 4, 2e-4) * b->points.cell;
+        assert_true(fabs(along(b, b->impulse, 0) / (b->normal_mass[0] * way / b->points.dt) - 1) < 1e-12);
+    }
+    b->points.count = MOST;
+    close_bench(b);
+}
+
+/* In tension a point holds on to what it touches and does not shut what is open between them. */
+static void test_coulomb_pulls_no_further_than_to_a_stop(void **state) {
+    (void)state;
+    static const setting glue[] = {{"adhesion", 1e9}, {"tensile_strength", 1e9}};
+    bench *b = open_bench("coulomb");
+    assert_int_equal(create(b, glue, 2), 0);
+    for (int round = 0; round < 100; round++) {
+        scramble(b, 2);
+        for (size_t i = 0; i < MOST; i++) b->gap[i] = uniform(0, 9e-4) * b->points.cell;
+        double before[ROWS * MOST] = {0}, approach[MOST];
+        for (size_t i = 0; i < MOST; i++) approach[i] = along(b, b->velocity, i);
+        respond(b);
+        apply(b, before);
+        for (size_t i = 0; i < b->points.count; i++) {
+            const double end = along(b, b->velocity, i), closes = b->gap[i] / b->points.dt;
+            if (approach[i] < 0)
+                assert_true(fabs(end) < 1e-9 * fabs(approach[i])); /* it has stopped */
+            else
+                assert_true(fabs(end - fmin(approach[i], closes)) < 1e-9 * (1 + closes)); /* it goes on until it touches */
+        }
+    }
+    close_bench(b);
+}
+
 /* ---- penalty -------------------------------------------------------------------------------------------------------------------------- */
 
 /* One mass pressed onto a loaded spring by a steady force, at rest in the middle but for a small kick. Returns the largest of |x - middle| in the last fifth of the
@@ -709,6 +755,8 @@ int main(void) {
         cmocka_unit_test(test_no_spring_gives_back_more_than_it_took),
         cmocka_unit_test(test_the_answer_rises_with_the_approach_and_not_too_steeply),
         cmocka_unit_test(test_a_spring_across_that_becomes_stiffer_keeps_its_energy),
+        cmocka_unit_test(test_coulomb_takes_an_overlap_back_slowly),
+        cmocka_unit_test(test_coulomb_pulls_no_further_than_to_a_stop),
         cmocka_unit_test(test_penalty_refuses_what_makes_no_sense),
         cmocka_unit_test(test_friction_falls_where_a_point_slips_until_it_is_held),
         cmocka_unit_test(test_a_dragged_spring_breaks_at_the_static_limit),
