@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "surface_hits.h"
+#include "facing_length.h"
 
 enum { CLOSED, NEWTON };
 enum { BOTH, FIRST, SECOND };
@@ -43,6 +43,7 @@ typedef struct remembered { /* a contact point of the last step */
 typedef struct placed { /* where a contact point of this step lies, for its area */
     uint32_t pass, face, vertex;
     double xi;
+    size_t point;
 } placed;
 
 typedef struct segments {
@@ -55,7 +56,8 @@ typedef struct segments {
     size_t placed_bytes;
     uint32_t *around[2]; /* per vertex of a and of b: the face that ends there, the face that begins, UINT32_MAX: none */
     uint8_t *met[2];     /* per vertex of a and of b: it is a contact point itself */
-    size_t around_bytes[2], met_bytes[2];
+    uint8_t *taken[2];   /* per face of a and of b: whose part of it is carried by another vertex */
+    size_t around_bytes[2], met_bytes[2], taken_bytes[2];
 } segments;
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
@@ -72,7 +74,7 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
 static void destroy(void *self) {
     segments *s = self;
     const ab_host *host = s->host;
-    void *all[] = {s->before, s->placed, s->around[0], s->around[1], s->met[0], s->met[1], s};
+    void *all[] = {s->before, s->placed, s->around[0], s->around[1], s->met[0], s->met[1], s->taken[0], s->taken[1], s};
     for (size_t k = 0; k < sizeof all / sizeof *all; ++k)
         if (all[k]) host->release(host->context, all[k]);
 }
@@ -232,7 +234,7 @@ static int emit(const pass *p, size_t i, const hit *h, uint32_t own_face, double
     if (out->distance) out->distance[n] = larger(gap, 0.0);
     out->area[n] = area;
     out->key[n] = key;
-    self->placed[n] = (placed){p->number, h->face, p->points->point_vertex ? p->points->point_vertex[i] : UINT32_MAX, h->xi};
+    self->placed[n] = (placed){p->number, h->face, p->points->point_vertex ? p->points->point_vertex[i] : UINT32_MAX, h->xi, i};
     out->count = n + 1;
     return 1;
 }
@@ -287,8 +289,7 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
         hit h = all->of[least];
         if (p->out->fixed_places) hold_place(p, i, base, &h);
         const double half = half_size(s, i, h.normal), width = s->point_area[i],
-                     part = vertex == UINT32_MAX ? 1.0 : part_along(s, p->around + 2 * (size_t)vertex, vertex, h.normal),
-                     area = half > 0.0 ? width * width / (2.0 * half) : width * part;
+                     area = half > 0.0 ? width * width / (2.0 * half) : width; /* wherever it lies: share_area */
         const uint32_t own_face = round_[least] ? p->around[2 * (size_t)vertex] : UINT32_MAX;
         const double open = p->out->fixed_places ? h.signed_distance - p->self->half_size * half : gap[least];
         if (!emit(p, i, &h, own_face, own_xi[least], open, area, base | take_slot(p->self, base, h.normal, &taken))) return 0;
@@ -301,10 +302,12 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
 /* Which faces meet at each vertex of a surface. */
 static int faces_around(segments *self, int side, const ab_surface *s) {
     if (!room(self->host, &self->around[side], &self->around_bytes[side], (2 * s->vertex_count + 1) * sizeof **self->around) ||
-        !room(self->host, &self->met[side], &self->met_bytes[side], s->vertex_count + 1))
+        !room(self->host, &self->met[side], &self->met_bytes[side], s->vertex_count + 1) ||
+        !room(self->host, &self->taken[side], &self->taken_bytes[side], s->face_count + 1))
         return 0;
     for (size_t k = 0; k < 2 * s->vertex_count; ++k) self->around[side][k] = UINT32_MAX;
     memset(self->met[side], 0, s->vertex_count);
+    memset(self->taken[side], 0, s->face_count);
     for (size_t f = 0; f < s->face_count; ++f) {
         const uint32_t *v = s->face_vertex + 3 * f;
         curve c;
@@ -315,25 +318,33 @@ static int faces_around(segments *self, int side, const ab_surface *s) {
     return 1;
 }
 
-/* Where both passes see the same piece of surface, each carries half of it: a point gives away half of its area in so far as the vertices of the face under it are
- * contact points too. Points that are no vertices (two bodies of material points, each with faces) stand all along their own faces. */
-static void share_area(segments *self, const ab_surface *const surface[2], ab_points *out) {
-    int along[2] = {0, 0};
+/* The area of a contact point is what its body's surface it stands for has over the other body. Where both passes see the same piece of surface, each carries
+ * half of it. Points that are no vertices (material points) stand for their own width, and where their body has faces all along these. */
+static void share_area(segments *self, const ab_surface *const surface[2], double reach, ab_points *out) {
+    facing side[2];
+    for (int k = 0; k < 2; ++k) side[k] = (facing){surface[k], self->around[k], self->met[k], self->taken[k], 0};
     for (size_t n = 0; n < out->count; ++n)
         if (self->placed[n].vertex != UINT32_MAX)
             self->met[self->placed[n].pass][self->placed[n].vertex] = 1;
         else
-            along[self->placed[n].pass] = 1;
-    for (size_t n = 0; n < out->count; ++n) {
-        const placed *p = self->placed + n;
-        const uint32_t other = 1 - p->pass, *v = surface[other]->face_vertex + 3 * (size_t)p->face;
-        const int vertices = v[2] == UINT32_MAX ? 2 : 3;
-        double phi[3], covered = 0.0;
-        shape(vertices == 3, p->xi, phi);
-        for (int k = 0; k < vertices; ++k)
-            if (self->met[other][v[k]] || along[other]) covered += phi[k];
-        out->area[n] *= 1.0 - 0.5 * larger(0.0, smaller(1.0, covered));
-    }
+            side[self->placed[n].pass].along = 1;
+    for (int round_ = 0; round_ < 2; ++round_) /* who carries what, then how much */
+        for (size_t n = 0; n < out->count; ++n) {
+            const placed *p = self->placed + n;
+            const facing *own = side + p->pass, *other = side + 1 - p->pass;
+            const double sign = p->pass == 0 ? -1.0 : 1.0, normal[2] = {sign * out->normal[n], sign * out->normal[out->ld + n]};
+            const frame f = {{out->position[n], out->position[out->ld + n]}, {normal[0], normal[1]}, {normal[1], -normal[0]}};
+            if (round_ == 0) {
+                if (p->vertex != UINT32_MAX) take_over(own, other, &f, p->vertex, p->face, reach);
+                continue;
+            }
+            const double width = out->area[n], *x = own->surface->point_position + p->point, at[2] = {x[0], x[own->surface->point_ld]},
+                         middle = along_frame(&f, at);
+            double low = middle - 0.5 * width, high = middle + 0.5 * width, all = width;
+            if (p->vertex != UINT32_MAX) own_length(own, &f, p->vertex, &low, &high, &all);
+            const double area = all > 0.0 ? width * (facing_length(other, &f, p->face, low, high) / all) : width;
+            out->area[n] = larger(LEAST_PART * width, area);
+        }
 }
 
 static int remember(segments *self, const ab_points *out) {
@@ -367,20 +378,15 @@ static int find(void *itself, const ab_trace *a, const ab_trace *b, ab_points *o
         if (!faces_around(self, k, surface[k])) return -1;
     }
     hits all = {0};
+    const double reach = 2.0 * out->dt * out->speed + NEAR * out->cell;
     for (uint32_t k = 0; k < 2; ++k) {
         if (!wanted[k]) continue;
-        const pass p = {self,
-                        surface[k],
-                        surface[1 - k],
-                        k,
-                        surface[k]->point_vertex ? self->around[k] : NULL,
-                        2.0 * out->dt * out->speed + NEAR * out->cell,
-                        out};
+        const pass p = {self, surface[k], surface[1 - k], k, surface[k]->point_vertex ? self->around[k] : NULL, reach, out};
         for (size_t i = 0; i < surface[k]->point_count; ++i)
             if (surface[k]->near_start[i] < surface[k]->near_start[i + 1] && !contact_of_point(&p, i, &all)) return -1;
     }
     out->failures += all.failures;
-    share_area(self, surface, out);
+    share_area(self, surface, reach, out);
     return remember(self, out) ? 0 : -1;
 }
 

@@ -150,22 +150,6 @@ static double cosine_to_cone(const ab_surface *own, const uint32_t around[2], ui
     return larger(dot(n[0], w), dot(n[1], w));
 }
 
-/* Part of the surface that vertex v of its own body stands for which lies along a face with normal n: of a corner's two faces one may look elsewhere. */
-static double part_along(const ab_surface *own, const uint32_t around[2], uint32_t v, const double n[2]) {
-    double along = 0.0, all = 0.0;
-    for (int k = 0; k < 2; ++k) {
-        curve c;
-        double here[2];
-        if (around[k] == UINT32_MAX || !curve_of(own, around[k], &c)) continue;
-        const uint32_t *of = own->face_vertex + 3 * (size_t)around[k];
-        if (!normal_at(&c, v == of[2] ? 0.0 : k == 0 ? 1.0 : -1.0, here)) continue;
-        const double share = c.bent ? c.length / 6.0 : c.length / 2.0;
-        all += share;
-        along += share * larger(0.0, -dot(here, n));
-    }
-    return all > 0.0 ? along / all : 1.0;
-}
-
 /* Hits of one convex vertex, each through one of its faces, when the point is at the vertex to rounding: their average. */
 static void merge_at_vertex(const ab_surface *s, hits *all) {
     for (size_t i = 0; i < all->count; ++i) {
