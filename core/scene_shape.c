@@ -5,9 +5,20 @@
 #include "core/scene_reader.h"
 
 enum { MOST_CORNERS = 2000, MOST_MEMBERS = 1000 };
+static const double LEAST_SIZE = 1e-30; /* m; its fourth power, as in moments of inertia, is still far from the smallest number */
+static const double LEAST_PART = 1e-12; /* of the coordinates: smaller sizes are lost in their rounding */
 
 static bool refuse(ab_scene_reader *r, ab_mark mark, const char *where, const char *why) {
     ab_report_error(r->base.report, mark, "%s: %s", where, why);
+    return false;
+}
+
+static bool large_enough(ab_scene_reader *r, ab_mark mark, const char *where, const char *what, double size, const double at[2]) {
+    const double away = fmax(fabs(at[0]), fabs(at[1]));
+    if (size >= LEAST_SIZE && size >= LEAST_PART * away) return true;
+    ab_report_error(r->base.report, mark,
+                    "%s: %s is %.3g m, too small to compute with, %.3g m from the origin; write %.3g m or more there, or check the unit",
+                    where, what, size, away, fmax(LEAST_SIZE, LEAST_PART * away));
     return false;
 }
 
@@ -26,7 +37,8 @@ static bool take_box(ab_scene_reader *r, const ab_node *node, const char *where,
                             path, d == 0 ? 'x' : 'y', shape->low[d], shape->high[d]);
             return false;
         }
-    return true;
+    return large_enough(r, node->mark, path, "the shorter side", fmin(shape->high[0] - shape->low[0], shape->high[1] - shape->low[1]),
+                        shape->high);
 }
 
 static bool take_round(ab_scene_reader *r, const ab_section *section, const ab_node *node, const char *where, ab_shape_spec *shape) {
@@ -37,6 +49,7 @@ static bool take_round(ab_scene_reader *r, const ab_section *section, const ab_n
     const ab_key *key = section->keys;
     const bool center = ab_read_point(&r->base, &key[ROUND_CENTER], v[ROUND_CENTER], path, shape->center);
     const bool radius = ab_read_number(&r->base, &key[ROUND_RADIUS], v[ROUND_RADIUS], path, &shape->radius);
+    if (radius && !large_enough(r, v[ROUND_RADIUS]->mark, path, "the radius", shape->radius, shape->center)) return false;
     if (section->count <= ROUND_INNER) return center && radius;
     const bool inner = ab_read_number(&r->base, &key[ROUND_INNER], v[ROUND_INNER], path, &shape->inner);
     if (radius && inner && !(shape->inner < shape->radius)) {
@@ -44,6 +57,8 @@ static bool take_round(ab_scene_reader *r, const ab_section *section, const ab_n
                         shape->inner, shape->radius);
         return false;
     }
+    if (radius && inner && !large_enough(r, v[ROUND_INNER]->mark, path, "the wall", shape->radius - shape->inner, shape->center))
+        return false;
     return center && radius && inner;
 }
 
@@ -107,9 +122,10 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
     if (count > 3 && memcmp(shape->vertices[0], shape->vertices[count - 1], sizeof shape->vertices[0]) == 0)
         count--; /* closed by repeating the first corner */
     shape->count = count;
-    double area = 0;
+    double area = 0, size = 0;
     for (size_t i = 0; i < count; i++) {
         const double *a = shape->vertices[i], *b = shape->vertices[(i + 1) % count];
+        size = fmax(size, fmax(fabs(a[0] - b[0]), fabs(a[1] - b[1])));
         if (a[0] == b[0] && a[1] == b[1]) {
             ab_report_error(r->base.report, node->items[i]->mark, "%s: corner %zu stands twice", path, i);
             return false;
@@ -117,6 +133,7 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
         area += 0.5 * ((a[0] - shape->vertices[0][0]) * (b[1] - shape->vertices[0][1]) -
                        (b[0] - shape->vertices[0][0]) * (a[1] - shape->vertices[0][1]));
     }
+    if (!large_enough(r, node->mark, path, "the longest piece", size, shape->vertices[0])) return false;
     size_t first, second;
     if (crosses_itself(shape, &first, &second)) {
         ab_report_error(r->base.report, node->mark, "%s: the outline meets itself: the piece from corner %zu and the piece from corner %zu",

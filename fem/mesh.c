@@ -7,6 +7,9 @@
 #include "fem/element.h"
 #include "fem/mesh_parts.h"
 
+static const double LEAST_SIZE = 1e-30; /* m, as of shapes: powers of it must be numbers */
+static const double LEAST_PART = 1e-12; /* of the coordinates, which round */
+
 static ab_status check(const ab_body_spec *spec, fem_mesh *mesh, ab_report *report);
 
 ab_status fem_mesh_create(const ab_body_spec *spec, const char *folder, fem_mesh **result, ab_report *report) {
@@ -18,7 +21,9 @@ ab_status fem_mesh_create(const ab_body_spec *spec, const char *folder, fem_mesh
     case AB_MESH_FILE: AB_TRY(fem_mesh_gmsh(spec, folder, &mesh, report)); break;
     default: return ab_report_error(report, spec->mark, "body '%s' has no mesh", spec->name);
     }
-    const ab_status status = check(spec, mesh, report);
+    ab_status status = check(spec, mesh, report);
+    if (status == AB_OK && spec->mesh.kind == AB_MESH_FILE)
+        status = fem_mesh_overlaps(mesh, spec->name, spec->mesh.mark, spec->mesh.file, report);
     if (status != AB_OK) {
         fem_mesh_destroy(mesh);
         return status;
@@ -90,6 +95,16 @@ static void measure(fem_mesh *mesh) {
 /* Every element must be the image of the square without a fold: what is left of it at Gauss points and corners is stated. */
 static ab_status check(const ab_body_spec *spec, fem_mesh *mesh, ab_report *report) {
     measure(mesh);
+    for (int d = 0; d < 2; d++) {
+        const double size = mesh->high[d] - mesh->low[d],
+                     least = fmax(LEAST_SIZE, LEAST_PART * fmax(fabs(mesh->low[d]), fabs(mesh->high[d])));
+        if (!(size >= least))
+            return ab_report_error(
+                report, spec->mesh.mark,
+                "body '%s': its mesh is %.3g m wide along %c, too small to compute with; write %.3g m or more there, or check "
+                "the unit",
+                spec->name, size, d == 0 ? 'x' : 'y', least);
+    }
     if (spec->mesh.kind == AB_MESH_BOX) return AB_OK;
     size_t wrong = 0;
     for (size_t e = 0; e < mesh->element_count; e++) {

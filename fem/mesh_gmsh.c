@@ -45,12 +45,56 @@ static const char *type_name(uint64_t type) {
     return "elements of another type";
 }
 
+static const char *gmsh_name(uint64_t type) {
+    static const char *const names[] = {
+        [2] = "Triangle 3",          [QUAD4] = "Quadrilateral 4", [9] = "Triangle 6",       [QUAD9] = "Quadrilateral 9",
+        [QUAD8] = "Quadrilateral 8", [20] = "Triangle 9",         [21] = "Triangle 10",     [22] = "Triangle 12",
+        [23] = "Triangle 15",        [36] = "Quadrilateral 16",   [37] = "Quadrilateral 25"};
+    return type < sizeof names / sizeof *names && names[type] != NULL ? names[type] : "another type";
+}
+
+/* Surfaces of one type only: true for those; else a mistake that counts each type, with the first elements of all but the most frequent (of two as frequent, the
+ * one that the scene wants). */
+static bool check_mixture(const from_file *f) {
+    const uint64_t wanted = f->spec->mesh.type >= AB_ELEMENT_Q8 ? QUAD8 : QUAD4;
+    char text[1200] = "";
+    size_t used = 0, kinds = 0, most = 0;
+    uint64_t weight = 0;
+    for (size_t k = 0; k < f->file->block_count; k++) {
+        const fem_gmsh_block *block = &f->file->block[k];
+        if (block->dimension != 2) continue;
+        kinds++;
+        const uint64_t own = 2 * block->count + (block->type == wanted);
+        if (own <= weight) continue;
+        weight = own;
+        most = k;
+    }
+    if (kinds < 2) return true;
+    for (size_t k = 0; k < f->file->block_count && used < sizeof text; k++) {
+        const fem_gmsh_block *block = &f->file->block[k];
+        if (block->dimension != 2) continue;
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%llu of %s (%llu nodes)", used > 0 ? ", " : "",
+                                 (unsigned long long)block->count, gmsh_name(block->type), (unsigned long long)block->nodes);
+        if (k == most || used >= sizeof text) continue;
+        char ids[400];
+        list_ids(ids, sizeof ids, block->id, block->count);
+        used += (size_t)snprintf(text + used, sizeof text - used, ": elements %s", ids);
+    }
+    ab_report_error(
+        f->report, mark_of(f),
+        "body '%s': '%s' has elements of several types: %s; quadrilaterals of one order are needed: set Mesh.RecombineAll = 1 and "
+        "Mesh.ElementOrder = 1 in Gmsh (or 2 with Mesh.SecondOrderIncomplete = 1) before meshing, and save anew",
+        f->spec->name, f->path, text);
+    return false;
+}
+
 /* Nothing but quadrilaterals with the nodes that the scene's type has. */
 static ab_status check_types(const from_file *f, size_t *elements) {
     const bool quadratic = f->spec->mesh.type >= AB_ELEMENT_Q8;
     const char *name = f->spec->name;
     ab_status status = AB_OK;
     *elements = 0;
+    if (!check_mixture(f)) return AB_BAD_INPUT;
     for (size_t k = 0; k < f->file->block_count; k++) {
         const fem_gmsh_block *block = &f->file->block[k];
         char ids[400];

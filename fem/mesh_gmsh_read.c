@@ -76,13 +76,97 @@ static void *wanted(int pipe, void *library, const char *name) {
 }
 #define CALL(name) ((__typeof__(&name))wanted(pipe, library, #name))
 
-static void put_elements(int pipe, void *library, int dimension, uint64_t *blocks, bool count_only) {
+typedef struct kind { /* elements of one type, gathered one by one */
+    size_t count, nodes, capacity, *id, *node;
+} kind;
+
+enum { TYPES = 256, MOST_GAPS = 4000000 };
+
+static double number_of(int pipe, void *library, const char *option) {
+    double number = 0;
+    int error = 0;
+    CALL(gmshOptionGetNumber)(option, &number, &error);
+    return error == 0 ? number : 0;
+}
+
+static void gather(int pipe, kind *k, size_t id, const size_t *node, size_t nodes) {
+    if (k->count == k->capacity) {
+        k->capacity = 2 * k->capacity + 64;
+        k->nodes = nodes;
+        k->id = realloc(k->id, k->capacity * sizeof *k->id);
+        k->node = realloc(k->node, k->capacity * nodes * sizeof *k->node);
+        if (k->id == NULL || k->node == NULL) fail(pipe, "there is no memory for its elements");
+    }
+    if (nodes != k->nodes) fail(pipe, "elements of one type have different numbers of nodes; save it anew");
+    k->id[k->count] = id;
+    memcpy(k->node + k->count++ * nodes, node, nodes * sizeof *node);
+}
+
+/* gmshModelMeshGetElements gives of each surface only the triangles like its first triangle and the quadrilaterals like its first quadrilateral, and loses the
+ * others without a word. Where it counts more than it gives, every element is asked for by its number. Returns the table of types, or NULL: nothing is lost. */
+static kind *gather_lost(int pipe, void *library, size_t given) {
+    const double all = number_of(pipe, library, "Mesh.NbTriangles") + number_of(pipe, library, "Mesh.NbQuadrangles");
+    if (all <= (double)given) return NULL;
+    kind *kinds = calloc(TYPES, sizeof *kinds);
+    if (kinds == NULL) fail(pipe, "there is no memory for its elements");
+    int error = 0, dimension[TYPES] = {0};
+    size_t found = 0, gaps = 0;
+    CALL(gmshLoggerStop)(&error); /* each gap between numbers would be a line of it */
+    __typeof__(&gmshModelMeshGetElement) ask = CALL(gmshModelMeshGetElement);
+    __typeof__(&gmshModelMeshGetElementProperties) describe = CALL(gmshModelMeshGetElementProperties);
+    __typeof__(&gmshFree) release = CALL(gmshFree);
+    for (size_t id = 1; (double)found < all && gaps < MOST_GAPS; id++) {
+        int type = 0;
+        size_t *node = NULL, nodes = 0;
+        ask(id, &type, &node, &nodes, &error);
+        if (error != 0 || type <= 0 || type >= TYPES || nodes == 0) {
+            gaps++;
+            continue;
+        }
+        if (dimension[type] == 0) {
+            char *name = NULL;
+            double *local = NULL;
+            int order = 0, count = 0, corners = 0;
+            size_t locals = 0;
+            describe(type, &name, &dimension[type], &order, &count, &local, &locals, &corners, &error);
+        }
+        if (dimension[type] == 2) {
+            gather(pipe, &kinds[type], id, node, nodes);
+            found++;
+        }
+        release(node);
+    }
+    if ((double)found < all)
+        fail(pipe,
+             "a surface has elements of several types, and not all can be found by their numbers; save elements of one type and order "
+             "(Mesh.ElementOrder, Mesh.RecombineAll = 1), numbered anew");
+    return kinds;
+}
+
+static void put_gathered(int pipe, const kind *kinds, uint64_t *blocks, bool count_only) {
+    for (uint64_t type = 0; type < TYPES; type++) {
+        const kind *k = &kinds[type];
+        if (k->count == 0) continue;
+        ++*blocks;
+        if (count_only) continue;
+        put_number(pipe, type);
+        put_number(pipe, 2);
+        put_number(pipe, k->nodes);
+        put_number(pipe, k->count);
+        put_ids(pipe, k->id, k->count);
+        put_ids(pipe, k->node, k->count * k->nodes);
+    }
+}
+
+static size_t put_elements(int pipe, void *library, int dimension, uint64_t *blocks, bool count_only) {
     int *type = NULL, error = 0;
     size_t types = 0, **id = NULL, *ids = NULL, ids_n = 0, **node = NULL, *nodes = NULL, nodes_n = 0;
     CALL(gmshModelMeshGetElements)(&type, &types, &id, &ids, &ids_n, &node, &nodes, &nodes_n, dimension, -1, &error);
-    if (error != 0 || ids_n != types || nodes_n != types) fail(pipe, "its elements cannot be read");
+    if (error != 0 || ids_n != types || nodes_n != types) fail(pipe, "its elements cannot be read; save it anew");
+    size_t given = 0;
     for (size_t k = 0; k < types; k++) {
         if (ids[k] == 0) continue;
+        given += ids[k];
         ++*blocks;
         if (count_only) continue;
         put_number(pipe, (uint64_t)type[k]);
@@ -92,6 +176,39 @@ static void put_elements(int pipe, void *library, int dimension, uint64_t *block
         put_ids(pipe, id[k], ids[k]);
         put_ids(pipe, node[k], nodes[k] / ids[k] * ids[k]);
     }
+    return given;
+}
+
+/* libgmsh names the node that is missing, not the element that wants it: that is looked up in the file, where it is text of format 2. */
+static void explain(int file, char text[TEXT]) {
+    unsigned long long missing = 0, id = 0;
+    char line[4096], said[TEXT / 2] = "";
+    snprintf(said, sizeof said, "%.*s", (int)sizeof said - 1, text);
+    FILE *stream = sscanf(text, "Wrong node index %llu", &missing) == 1 && lseek(file, 0, SEEK_SET) == 0 ? fdopen(file, "r") : NULL;
+    bool elements = false, found = false;
+    double version = 0;
+    for (int number = 1; stream != NULL && !found && fgets(line, sizeof line, stream) != NULL; number++) {
+        if (number == 2 && (sscanf(line, "%lf", &version) != 1 || version >= 3)) break;
+        if (strncmp(line, "$Elements", 9) == 0) elements = true;
+        if (!elements || line[0] == '$') continue;
+        char *at = line;
+        unsigned long long field = 0, tags = 0;
+        for (unsigned long long k = 0; !found; k++) { /* id, type, tags, the tags, nodes */
+            char *end = at;
+            field = strtoull(at, &end, 10);
+            if (end == at) break;
+            at = end;
+            if (k == 0) id = field;
+            if (k == 2) tags = field;
+            found = k > 2 && k - 3 >= tags && field == missing;
+        }
+    }
+    if (found)
+        snprintf(text, TEXT,
+                 "element %llu names node %llu, which the file does not have (%s); the file is damaged or cut off, save it anew", id,
+                 missing, said);
+    else
+        snprintf(text, TEXT, "%s; the file is damaged, cut off or of another kind, save it anew from Gmsh", said);
 }
 
 static void read_there(int pipe, int file) {
@@ -116,6 +233,7 @@ static void read_there(int pipe, int file) {
     CALL(gmshLoggerGet)(&log, &lines, &error);
     for (size_t i = 0; i < lines && text[0] == '\0'; i++)
         if (strncmp(log[i], "Error", 5) == 0) snprintf(text, sizeof text, "%s", log[i] + strspn(log[i] + 5, ": ") + 5);
+    if (text[0] != '\0' && strstr(text, path) == NULL) explain(file, text);
     if ((merged != 0 && text[0] == '\0') || strstr(text, path) != NULL)
         snprintf(text, sizeof text, "it is damaged, or ends too early; save it anew");
     if (text[0] != '\0') fail(pipe, text);
@@ -123,14 +241,23 @@ static void read_there(int pipe, int file) {
     double *coord = NULL, *parameter = NULL;
     CALL(gmshModelMeshGetNodes)(&id, &ids, &coord, &coords, &parameter, &parameters, -1, -1, 0, 0, &error);
     if (error != 0 || coords != 3 * ids) fail(pipe, "its nodes cannot be read");
+    uint64_t blocks = 0;
+    const kind *lost = gather_lost(pipe, library, put_elements(pipe, library, 2, &blocks, true));
     put_text(pipe, false, "");
     put_number(pipe, ids);
     put_ids(pipe, id, ids);
     put(pipe, coord, coords * sizeof *coord);
-    uint64_t blocks = 0;
-    for (int d = 2; d <= 3; d++) put_elements(pipe, library, d, &blocks, true);
+    if (lost != NULL) {
+        blocks = 0;
+        put_gathered(pipe, lost, &blocks, true);
+    }
+    put_elements(pipe, library, 3, &blocks, true);
     put_number(pipe, blocks);
-    for (int d = 2; d <= 3; d++) put_elements(pipe, library, d, &blocks, false);
+    if (lost != NULL)
+        put_gathered(pipe, lost, &blocks, false);
+    else
+        put_elements(pipe, library, 2, &blocks, false);
+    put_elements(pipe, library, 3, &blocks, false);
     _exit(0);
 }
 

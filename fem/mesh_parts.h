@@ -22,6 +22,10 @@ ab_status fem_mesh_lattice(const ab_body_spec *, fem_mesh_place, const void *con
  * elements, two that run the same way (elements that lie on each other), another node in the middle. */
 ab_status fem_sides_join(const fem_mesh *, const char *body, ab_mark, uint32_t **mate, ab_report *);
 
+/* Elements that cover the same place without sharing sides: an error where more than a tenth of an element lies on another, else a warning; both say how much area.
+ * The mesh has its bounds, joined sides and no folded element. n log n. */
+ab_status fem_mesh_overlaps(const fem_mesh *, const char *body, ab_mark, const char *file, ab_report *);
+
 /* The smallest det J of an element over its Gauss points and corners, over that of a square of the same area; 0 or less: folded or inverted. */
 double fem_mesh_jacobian(const fem_mesh *, ab_element_type, size_t element);
 

@@ -47,6 +47,12 @@ static bool said(const ab_report *report, const char *piece) {
 #define ELEMENTS(n, text) "$Elements\n" #n "\n" text "$EndElements\n"
 #define TWO SQUARE(7, 10, 11, 21, 20) SQUARE(9, 11, 12, 22, 21)
 
+/* Two squares with middles of sides and of the right one; a spare node in none. */
+#define MIXED                                                                                                                              \
+    HEAD2                                                                                                                                  \
+    "$Nodes\n14\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n9 2 0 0\n10 2 1 0\n11 1.5 0 0\n12 2 .5 "      \
+    "0\n13 1.5 1 0\n14 1.5 .5 0\n$EndNodes\n"
+
 #ifdef ABUT_WITH_GMSH
 
 static const char two_squares_4[] =
@@ -113,7 +119,34 @@ static const struct {
     const char *text, *said;
 } mistakes[] = {
     {AB_ELEMENT_Q4, HEAD2 NODES2 ELEMENTS(2, SQUARE(7, 10, 11, 21, 20) "9 2 2 1 1 11 12 22\n"),
-     "has triangles (elements 9); quadrilaterals of 4 or 8"},
+     "has elements of several types: 1 of Triangle 3 (3 nodes): elements 9, 1 of Quadrilateral 4 (4 nodes)"},
+    {AB_ELEMENT_Q4, HEAD2 NODES2 ELEMENTS(1, "9 2 2 1 1 11 12 22\n"), "has triangles (elements 9); quadrilaterals of 4 or 8"},
+    /* one surface: libgmsh gives only what is like the first of its quadrilaterals */
+    {AB_ELEMENT_Q4, MIXED "$Elements\n3\n7 3 2 1 1 1 2 3 4\n8 3 2 1 1 11 12 13 14\n9 10 2 1 1 2 9 10 3 11 12 13 6 14\n$EndElements\n",
+     "beam.msh' has elements of several types: 2 of Quadrilateral 4 (4 nodes), 1 of Quadrilateral 9 (9 nodes): elements 9; quadrilaterals "
+     "of one order are needed"},
+    {AB_ELEMENT_Q8, MIXED "$Elements\n3\n70 16 2 1 1 1 2 3 4 5 6 7 8\n71 16 2 1 1 2 9 10 3 11 12 13 6\n99 3 2 1 1 1 2 3 4\n$EndElements\n",
+     "1 of Quadrilateral 4 (4 nodes): elements 99, 2 of Quadrilateral 8 (8 nodes)"},
+    {AB_ELEMENT_Q4, MIXED "$Elements\n2\n7 3 2 1 1 1 2 3 4\n9 9 2 2 2 2 9 3 11 13 6\n$EndElements\n",
+     "1 of Quadrilateral 4 (4 nodes), 1 of Triangle 6 (6 nodes): elements 9"},
+    {AB_ELEMENT_Q4, MIXED "$Elements\n2\n7 3 2 1 1 1 2 3 4\n20000000 10 2 1 1 2 9 10 3 11 12 13 6 14\n$EndElements\n",
+     "a surface has elements of several types, and not all can be found by their numbers"},
+    /* an element inside another, one across others, a piece drawn twice */
+    {AB_ELEMENT_Q4,
+     HEAD2 "$Nodes\n8\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n5 .5 .5 0\n6 1.5 .5 0\n7 1.5 1 0\n8 .5 1 0\n$EndNodes\n" ELEMENTS(
+         2, SQUARE(1, 1, 2, 3, 4) SQUARE(2, 5, 6, 7, 8)),
+     "overlap in 1 pair, by 0.5 m2 together: 1 and 2, say, share 100 % of the smaller"},
+    {AB_ELEMENT_Q4,
+     HEAD2 "$Nodes\n10\n10 0 0 0\n11 1 0 0\n12 2 0 0\n20 0 1 0\n21 1 1 0\n22 2 1 0\n1 .5 .75 0\n2 1.75 .75 0\n3 1.75 2 0\n4 .5 2 "
+           "0\n$EndNodes\n" ELEMENTS(3, TWO SQUARE(12, 1, 2, 3, 4)),
+     "overlap in 2 pairs, by 0.3125 m2 together: 9 and 12, say, share 18.8 %"},
+    {AB_ELEMENT_Q4,
+     HEAD2 "$Nodes\n8\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n5 0 0 0\n6 2 0 0\n7 2 2 0\n8 0 2 0\n$EndNodes\n" ELEMENTS(
+         2, SQUARE(1, 1, 2, 3, 4) SQUARE(2, 5, 6, 7, 8)),
+     "overlap in 1 pair, by 4 m2 together"},
+    {AB_ELEMENT_Q4,
+     HEAD2 "$Nodes\n4\n1 0 0 0\n2 1e-200 0 0\n3 1e-200 1e-200 0\n4 0 1e-200 0\n$EndNodes\n" ELEMENTS(1, SQUARE(5, 1, 2, 3, 4)),
+     "too small to compute with"},
     {AB_ELEMENT_Q8, HEAD2 NODES2 ELEMENTS(2, TWO), "has quadrilaterals of 4 nodes (elements 7, 9), but the mesh's type is one of 8 nodes"},
     {AB_ELEMENT_Q8,
      HEAD2 "$Nodes\n9\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n5 1 0 0\n6 2 1 0\n7 1 2 0\n8 0 1 0\n9 1 1 0\n$EndNodes\n"
@@ -129,7 +162,8 @@ static const struct {
     {AB_ELEMENT_Q4, HEAD2 "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0.5\n4 0 1 0\n$EndNodes\n" ELEMENTS(1, SQUARE(5, 1, 2, 3, 4)),
      "node 1 has z = 0, node 3 has z = 0.5"},
     {AB_ELEMENT_Q4, HEAD2 "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 nan 0\n4 0 1 0\n$EndNodes\n" ELEMENTS(1, SQUARE(5, 1, 2, 3, 4)), "node 3 of"},
-    {AB_ELEMENT_Q4, HEAD2 NODES2 ELEMENTS(1, SQUARE(5, 10, 11, 21, 44)), "beam.msh'"},
+    {AB_ELEMENT_Q4, HEAD2 NODES2 ELEMENTS(1, SQUARE(5, 10, 11, 21, 44)),
+     "element 5 names node 44, which the file does not have (Wrong node index 44); the file is damaged or cut off, save it anew"},
     {AB_ELEMENT_Q8,
      HEAD2 "$Nodes\n16\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n9 2 0 0\n10 2 .5 0\n11 1.5 0 0\n12 2 "
            ".25 0\n13 1.5 .5 "
@@ -169,6 +203,29 @@ static void test_a_crack_is_warned_of(void **state) {
     assert_true(said(report, "are not joined with it (2 and 5, say)"));
     fem_mesh_destroy(mesh);
     ab_report_destroy(report);
+}
+
+/* Pieces that only touch, or overlap by chords of a common circle at most, are taken; the latter is said. */
+static void test_pieces_that_touch_are_not_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *x;
+        size_t warnings;
+    } upper[] = {{"1.0", 0}, {"0.95", 1}, {"1.000001", 0}};
+    for (size_t k = 0; k < 3; k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 HEAD2 "$Nodes\n10\n10 0 0 0\n11 1 0 0\n12 2 0 0\n20 0 1 0\n21 1 1 0\n22 2 1 0\n1 .5 %s 0\n2 1.75 %s 0\n3 1.75 2 0\n4 .5 2 "
+                       "0\n$EndNodes\n" ELEMENTS(3, TWO SQUARE(12, 1, 2, 3, 4)),
+                 upper[k].x, upper[k].x);
+        ab_report *report = ab_report_create();
+        fem_mesh *mesh = read_back(AB_ELEMENT_Q4, text, report);
+        assert_non_null(mesh);
+        assert_int_equal(ab_report_warnings(report), upper[k].warnings);
+        if (upper[k].warnings > 0) assert_true(said(report, "overlap in 2 pairs, by 0.0625 m2 together"));
+        fem_mesh_destroy(mesh);
+        ab_report_destroy(report);
+    }
 }
 
 static void test_files_that_are_not_there_are_named(void **state) {
@@ -253,6 +310,7 @@ int main(void) {
         cmocka_unit_test(test_elements_drawn_clockwise_are_turned_round),
         cmocka_unit_test(test_each_mistake_is_said_with_the_ids_of_the_file),
         cmocka_unit_test(test_a_crack_is_warned_of),
+        cmocka_unit_test(test_pieces_that_touch_are_not_refused),
         cmocka_unit_test(test_files_that_are_not_there_are_named),
         cmocka_unit_test(test_nothing_beside_a_mesh_is_executed),
         cmocka_unit_test(test_damaged_files_are_answered),

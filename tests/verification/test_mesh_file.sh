@@ -26,7 +26,7 @@ SCENE
 }
 scene '{patch: {bottom: [[1, 0], [2, 0]], right: {arc: {from: [2, 0], to: [0, 2], center: [0, 0]}}, top: [[0, 1], [0, 2]], left: {arc: {from: [1, 0], to: [0, 1], center: [0, 0]}}}, elements: [3, 8]}' >"$scratch/patch.yaml"
 scene '{file: meshes/ring.msh}' >"$scratch/file.yaml"
-scene '{file: meshes/wrong.msh}' >"$scratch/wrong.yaml"
+for name in wrong mixed twice; do scene "{file: meshes/$name.msh}" >"$scratch/$name.yaml"; done
 
 # The same mesh in two surfaces of a file, ids with gaps, drawn clockwise.
 /usr/bin/env python3 - "$scratch/meshes" <<'PYTHON' || exit 1
@@ -51,6 +51,17 @@ text = "\n".join(lines) + "\n$EndElements\n"
 open(sys.argv[1] + "/ring.msh", "w").write(text)
 wrong = text.replace(lines[-1], lines[-1].replace(lines[-1].split()[0] + " 16 2", "999 16 2").replace(lines[-1].split()[5], "1000"))
 open(sys.argv[1] + "/wrong.msh", "w").write(wrong)
+# One element with a node in its middle among the others, in the same surface; the last element drawn twice, with nodes of its own.
+last = lines[-1].split()
+middle = text.replace("$Nodes\n" + str(len(node)), "$Nodes\n" + str(len(node) + 1)).replace("$EndNodes", "9999 0.1 1.8 0\n$EndNodes")
+mixed = middle.replace(lines[-1], " ".join([last[0], "10"] + last[2:5] + last[5:] + ["9999"]))
+open(sys.argv[1] + "/mixed.msh", "w").write(mixed)
+place = {id: (x, y) for id, x, y in node.values()}
+copies = [f"{20000 + k} {place[int(id)][0]!r} {place[int(id)][1]!r} 0" for k, id in enumerate(last[5:])]
+twice = text.replace("$Nodes\n" + str(len(node)), "$Nodes\n" + str(len(node) + 8)).replace("$EndNodes", "\n".join(copies) + "\n$EndNodes")
+twice = twice.replace("$Elements\n" + str(nr * na), "$Elements\n" + str(nr * na + 1))
+twice = twice.replace("$EndElements", " ".join(["800"] + last[1:5] + [str(20000 + k) for k in range(8)]) + "\n$EndElements")
+open(sys.argv[1] + "/twice.msh", "w").write(twice)
 PYTHON
 
 missed=0
@@ -82,5 +93,13 @@ say $? 'a ring from a file moves as the patch does'
 status=$?
 [ $status -eq 2 ] && grep -q "wrong.yaml:9:11: error: body 'ring': .*999" "$scratch/wrong.log"
 say $? 'a mesh that is wrong is refused by its place in the scene and its ids'
+"$build/abut" check "$scratch/mixed.yaml" >"$scratch/mixed.log" 2>&1
+status=$?
+[ $status -eq 2 ] && grep -q "several types: 1 of Quadrilateral 9 (9 nodes): elements 119, 23 of Quadrilateral 8" "$scratch/mixed.log"
+say $? 'an element of another order in the same surface is found, counted and named'
+"$build/abut" check "$scratch/twice.yaml" >"$scratch/twice.log" 2>&1
+status=$?
+[ $status -eq 2 ] && grep -q "overlap in 1 pair, by 0.119222 m2 together: 119 and 800, say, share 100 %" "$scratch/twice.log"
+say $? 'an element drawn twice is found'
 [ $missed -eq 0 ] || cat "$scratch"/*.log
 [ $missed -eq 0 ]
