@@ -263,6 +263,9 @@ static double softer_density(const ab_scene *scene, const contact_pair *pair) {
     return density;
 }
 
+/* Its places of contact stay on it as it moves: those of points drift a little against the velocities that move them. */
+static bool is_mesh(const ab_domain *body) { return ab_domain_is_rigid(body) || body->ops->cells; }
+
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
@@ -287,7 +290,8 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.view.dimension = 2;
         pair->points.view.density = softer_density(scene, pair);
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
-        pair->points.view.fixed_places = (spec->responder->class_.needs & AB_NEED_FIXED_PLACES) != 0;
+        pair->points.meshes = is_mesh(pair->a) && is_mesh(pair->b);
+        pair->points.view.fixed_places = pair->points.meshes && (spec->responder->class_.needs & AB_NEED_FIXED_PLACES);
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)

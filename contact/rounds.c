@@ -16,11 +16,12 @@ enum { MOST_ROUNDS = 400, PATIENCE = 6, MOST_PATIENCE = 60, PLAIN = 8 }; /* the 
  * at contact points, and what they leave undone is a part of that. */
 static const double STANDSTILL[] = {[AB_STAGE_DYNAMIC] = 1e-13, [AB_STAGE_KINEMATIC] = 1e-2};
 static const double PROGRESS = 0.9; /* PATIENCE rounds must bring the change down to this part of what it was */
-/* Bodies that are held together share one motion along their seam, which takes many rounds to find, and what is left of the rest does work: MOST_PATIENCE then. */
+/* Meshes that are held together share one motion along their seam, which takes many rounds to find, and what is left of the rest does work: MOST_PATIENCE then. (Points
+ * that are held would stiffen the seam to one straight line if they were held exactly: several for each freedom of the grid.) */
 static const double LITTLE_PROGRESS = 0.99;
 
 typedef struct progress {
-    bool pulls; /* some point pulls */
+    bool pulls; /* some point between meshes pulls */
     double change2, largest2,
         square; /* N2 s2: squares of the largest change of an impulse in a round and of the largest impulse, sum of squared changes */
 } progress;
@@ -57,7 +58,7 @@ static void apply(contact_pair *pair, const contact_side side[2], size_t i, prog
         pair->points.change[k] = j[c];
     }
     const double jx = p->impulse[i], jy = p->impulse[p->ld + i];
-    so_far->pulls = so_far->pulls || jx * p->normal[i] + jy * p->normal[p->ld + i] < 0.0;
+    so_far->pulls = so_far->pulls || (pair->points.meshes && jx * p->normal[i] + jy * p->normal[p->ld + i] < 0.0);
     so_far->largest2 = ab_larger(so_far->largest2, jx * jx + jy * jy);
     if (j[0] == 0.0 && j[1] == 0.0) return;
     const double square = j[0] * j[0] + j[1] * j[1];
@@ -119,7 +120,7 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
         if (!pairs[k].points.view.count) continue;
         ++active;
         again = again || pairs[k].points.shared || pairs[k].points.held;
-        holds = holds || pairs[k].points.view.fixed_places;
+        holds = holds || (stage == AB_STAGE_DYNAMIC && pairs[k].points.view.fixed_places);
     }
     again = again || active > 1;
     double square = 0.0, least = INFINITY;
@@ -136,7 +137,7 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
             AB_TRY(round_over(pair, side, history, &so_far, report));
         }
         const double change = sqrt(so_far.change2), largest = sqrt(so_far.largest2);
-        if (stage == AB_STAGE_DYNAMIC) holds = holds || so_far.pulls;
+        holds = holds || (stage == AB_STAGE_DYNAMIC && so_far.pulls);
         if (change < (holds ? LITTLE_PROGRESS : PROGRESS) * least) least = change, since = 0;
         if (!again || change <= STANDSTILL[stage] * largest || ++since > (holds ? MOST_PATIENCE : PATIENCE)) break;
         const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;

@@ -267,7 +267,7 @@ typedef struct ab_points {
     double density;    /* kg/m3: of the body that modulus is of; 0 where it has none (rigid) */
     const double *relative_velocity_old; /* m/s, dimension rows: at the start of the step. The work that an impulse takes from the bodies is the impulse
                                             times the mean of this and of what relative_velocity ends at */
-    int fixed_places; /* 1: a finder keeps its points where they are on the bodies (a response that holds them asked for it); 0: it may follow the place where
+    int fixed_places; /* 1: a finder keeps its points where they are on the bodies (a response that holds them asked for it, and both are meshes); 0: it may follow the place where
                          round bodies touch, which moves along them as they roll */
 } ab_points;
 

@@ -249,8 +249,8 @@ static double half_size(const ab_surface *s, size_t i, const double n[2]) {
 static const double HOLDS = 0.012, /* of a cell: bodies that a response holds together (tied, from 0.01 on) are no further apart */
     AWAY = 0.5;                    /* of a face: where a place is not the same any more, as when an outline was drawn anew */
 
-/* The place that a point held on to in the last step, in place of the closest one: a hold that follows the closest place, as that moves along the faces of bodies that
- * bend and turn, does work on them. */
+/* The place that it held on to in the last step instead of the closest one: a hold that follows the closest place, as that moves along the
+ * faces of bodies that bend and turn, does work on them. */
 static void hold_place(const pass *p, size_t i, uint64_t key, hit *h) {
     const remembered *was = recall(p->self, key);
     if (!was || !(was->gap <= HOLDS * p->out->cell) || was->face >= p->faces->face_count) return;
