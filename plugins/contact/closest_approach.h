@@ -76,9 +76,14 @@ static void closest_approach(const ab_trace *a, const ab_trace *b, size_t i, con
     enum { DIRECTIONS = 24 };
     clearance begin = {.distance = -INFINITY};
     for (int k = 0; k < 3; ++k) {
-        const clearance seen = look_along(a, b, i, atan2(guess[k][1], guess[k][0]));
-        if (seen.distance > begin.distance) begin = seen;
+        const double length = sqrt(guess[k][0] * guess[k][0] + guess[k][1] * guess[k][1]);
+        if (!(length > 0.0)) continue;
+        clearance seen = look_towards(a, b, i, 0.0, guess[k][0] / length, guess[k][1] / length);
+        if (!(seen.distance > begin.distance)) continue;
+        begin = seen;
+        begin.angle = atan2(guess[k][1], guess[k][0]);
     }
+    if (begin.distance == -INFINITY) begin = look_along(a, b, i, 0.0);
     clearance found = begin.distance > APART * a->cell ? begin : climb(a, b, i, begin);
     if (corner && found.distance < 0.0) {
         begin = found;

@@ -237,6 +237,9 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         vb[c] = nb[c] = b->area_vector[c * b->ld + i];
     }
     const double la = unit(na, d), lb = unit(nb, d);
+    double face = 1.0;
+    for (uint32_t c = 1; c < d; ++c) face *= a->cell;
+    if (!(smaller(la, lb) > LEAST_AREA * face)) return 0; /* one of them has no face here, whatever the normal is */
     n[0] = n[1] = n[2] = 0.0;
     if (mv->normal < 0)
         memcpy(n, mv->direction, sizeof mv->direction);
@@ -254,15 +257,13 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
         along_a += va[c] * n[c];
         along_b -= vb[c] * n[c];
     }
-    double face = 1.0;
-    for (uint32_t c = 1; c < d; ++c) face *= a->cell;
     /* Less: one body only just reaches the node, and has no say there. But of two bodies in one cell, thinner than it, both area vectors may point the same way:
      * then the larger says that there is a face, though not how much of it is shared. */
     const double less = smaller(along_a, along_b), more = larger(along_a, along_b);
     double alike = 0.0;
     for (uint32_t c = 0; c < d; ++c) alike += va[c] * vb[c];
     *area = larger(less, 0.0);
-    return less > LEAST_AREA * face || (alike > 0.0 && more > LEAST_AREA * face && smaller(la, lb) > LEAST_AREA * face);
+    return less > LEAST_AREA * face || (alike > 0.0 && more > LEAST_AREA * face);
 }
 
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
