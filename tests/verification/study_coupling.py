@@ -10,6 +10,8 @@ import subprocess
 import sys
 import tempfile
 
+from pages import finish, table
+
 BUILD = sys.argv[1]
 WRITE = "--write" in sys.argv
 SCRATCH = os.environ.get("ABUT_SCRATCH") or tempfile.mkdtemp()
@@ -99,7 +101,6 @@ def beam_rows():
                 if isinstance(summary, str):
                     rows.append([element, finder, response, summary, "", "", "", "", ""])
                     continue
-                e = expects(summary)
                 deepest = next((x["value"] for x in summary["expects"] if x["name"] == "the tip sinks"), None)
                 left = next((x["value"] for x in summary["expects"] if x["name"] == "free slip"), None)
                 rest = summary["ledger"]["remainder_relative"]
@@ -115,24 +116,10 @@ def beam_rows():
     return rows
 
 
-def table(title, heads, rows):
-    lines = [title, "", "| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
-
-
 text = table("Two bars meet end to end, 40 cells a bar, elements as large as cells. Errors in per cent of the exact force, of 2 L/c, of the speed; "
              "energy in per cent of the first; seconds of processor time.",
              ["bodies", "element", "finder", "response", "force", "duration", "speed", "contact loss", "remainder", "s"], impact_rows())
 text += "\n" + table("Block of points on a cantilever beam (cases/block_on_beam). Lowest place of the tip in metres, time in seconds when the middle of the block passes it, remainder in per cent of the "
                      "largest term of the ledger, deepest overlap in millimetres (as the block turns over the edge). Reference: -0.137 m and 2.23 s.",
                      ["element", "finder", "response", "steps", "tip", "passes", "remainder", "deepest", "s"], beam_rows())
-print(text)
-if WRITE:
-    with open(PAGE) as stream:
-        page = stream.read()
-    first, last = page.index(BEGIN) + len(BEGIN), page.index(END)
-    with open(PAGE, "w") as stream:
-        stream.write(page[:first] + "\n\n" + text + "\n" + page[last:])
-for line in failures:
-    print(f"FAILED: {line}", file=sys.stderr)
-sys.exit(1 if failures else 0)
+finish(text, failures, PAGE, BEGIN, END, WRITE)

@@ -16,6 +16,8 @@ import tempfile
 import h5py
 import numpy as np
 
+from pages import finish, table
+
 BUILD = sys.argv[1]
 WRITE = "--write" in sys.argv
 SCRATCH = os.environ.get("ABUT_SCRATCH") or tempfile.mkdtemp()
@@ -172,11 +174,6 @@ def column_rows():
     return rows
 
 
-def table(title, heads, rows):
-    lines = [title, "", "| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
-
-
 if __name__ == "__main__":
     ring = [f"{what}, R/{cells}" for cells in (8, 16) for what in ("spin lost", "remainder", "stress", "noise", "s")]
     text = table("Free ring, inner radius 0.6 R, one turn of its rim at 0.05 of the wave speed, GIMP, MUSL, cells of R/8 and R/16 (about 6400 and 12800 steps). Angular momentum lost and "
@@ -190,13 +187,4 @@ if __name__ == "__main__":
                          ["transfer", "impact: force", "duration", "speed", "remainder", "s", "incline: slip", "friction", "remainder", "s"], contact_rows())
     text += "\n" + table("Column under a load that grows to 3/4 of its modulus (5 m of 10), damped, update musl and usl. Errors of the settlement and of the stress in per cent, remainder in per cent of the largest energy.",
                          ["transfer", "musl: settlement", "stress", "remainder", "usl: settlement", "stress", "remainder"], column_rows())
-    print(text)
-    if WRITE:
-        with open(PAGE) as stream:
-            page = stream.read()
-        first, last = page.index(BEGIN) + len(BEGIN), page.index(END)
-        with open(PAGE, "w") as stream:
-            stream.write(page[:first] + "\n\n" + text + "\n" + page[last:])
-    for line in failures:
-        print(f"FAILED: {line}", file=sys.stderr)
-    sys.exit(1 if failures else 0)
+    finish(text, failures, PAGE, BEGIN, END, WRITE)
