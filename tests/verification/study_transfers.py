@@ -5,50 +5,25 @@
 A free spinning ring (ring.yaml, thicker and twice as fast), a vibrating bar on three meshes (bar_1.yaml, and bar_5.yaml for short waves), noise that no node sees
 (noise_transfers.yaml), two bars that meet (impact.yaml), a block on an incline (cases/block_on_incline) and a column under a load that grows (column.yaml), each with every transfer. It fails where a run does not
 end, where apic does not keep the angular momentum to rounding, where frequencies do not converge or where a transfer makes energy."""
-import csv
-import json
 import math
-import os
-import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy as np
 
 from pages import finish, table
+from runs import Runs, errors, figure
 
-BUILD = sys.argv[1]
 WRITE = "--write" in sys.argv
-SCRATCH = os.environ.get("ABUT_SCRATCH") or tempfile.mkdtemp()
 TRANSFERS = ["flip", "{flip: 0.99}", "pic", "apic", "tpic", "{xpic: 2}", "{xpic: 3}", "{xpic: 5}", "{fmpm: 2}", "{fmpm: 5}"]
 PAGE = "docs/accuracy.md"
 BEGIN, END = "<!-- made by study_transfers.py: begin -->", "<!-- made by study_transfers.py: end -->"
-failures = []
-runs = 0
+runs = Runs(sys.argv[1])
+failures = runs.failures
 
 
 def run(scene, bodies, transfer, settings={}):
-    """Summary and columns of history of a run, and the folder; None where it does not end."""
-    global runs
-    runs += 1
-    folder = f"{SCRATCH}/{runs}"
-    command = [f"{BUILD}/abut", "run", scene, "--quiet", "-j", "1", "-o", folder]
-    for path, value in {**{f"bodies.{body}.transfer": transfer for body in bodies}, **settings}.items():
-        command += ["--set", f"{path}={value}"]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=900)
-    except subprocess.TimeoutExpired:
-        failures.append(f"{' '.join(command)}: does not end")
-        return None
-    if done.returncode:
-        failures.append(f"{' '.join(command)}: {done.stderr.strip()}")
-        return None
-    with open(f"{folder}/summary.json") as stream:
-        summary = json.load(stream)
-    with open(f"{folder}/history.csv") as stream:
-        rows = list(csv.DictReader(stream))
-    return summary, {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}, folder
+    return runs.run(scene, {**{f"bodies.{body}.transfer": transfer for body in bodies}, **settings})
 
 
 def noise_in_cells(folder, body, cell):
@@ -81,10 +56,6 @@ def energy_lost(history):
     return 1 - total[-period:].mean() / total[:period].mean()
 
 
-def figure(value):
-    return f"{value:.0f}" if abs(value) >= 99.5 else f"{value:.2g}"
-
-
 def ring_rows():
     rows = []
     for transfer in TRANSFERS:
@@ -100,7 +71,7 @@ def ring_rows():
             if transfer == "apic" and abs(lost) > 1e-12:
                 failures.append(f"ring, apic, {cells} cells: angular momentum off by {lost:.2g}")
             row += [figure(100 * lost) if abs(lost) > 1e-12 else "0", figure(100 * summary["ledger"]["remainder"] / moved),
-                    figure(100 * next(e["error"] for e in summary["expects"] if e["name"] == "mean stress along x")),
+                    figure(100 * errors(summary)["mean stress along x"]),
                     figure(100 * noise_in_cells(folder, "ring", 1 / cells)), f"{summary['cpu_seconds']:.1f}"]
         rows.append(row)
     return rows
@@ -109,24 +80,24 @@ def ring_rows():
 def bar_rows():
     rows = []
     for transfer in TRANSFERS:
-        row, errors = [transfer], []
+        row, off = [transfer], []
         for cells in (25, 50, 100):
             ran = run("tests/verification/bar_1.yaml", ["bar"], transfer, {"bodies.bar.update": "musl", "constants.cells": cells, "history.every": 1})
             if not ran:
                 return rows
             summary, history, _ = ran
-            errors.append(frequency(history["t"], history["speed"]) / 0.1 - 1)  # c/(4 L) = 0.1 1/s
+            off.append(frequency(history["t"], history["speed"]) / 0.1 - 1)  # c/(4 L) = 0.1 1/s
             if cells == 50:
                 middle = [figure(100 * energy_lost(history)), f"{summary['cpu_seconds']:.2f}"]
-        if transfer != "pic" and not 3 < errors[0] / errors[2] < 40:  # 16 is second order
-            failures.append(f"bar, {transfer}: the error of the frequency goes from {errors[0]:.2g} to {errors[2]:.2g} on cells a quarter as large")
+        if transfer != "pic" and not 3 < off[0] / off[2] < 40:  # 16 is second order
+            failures.append(f"bar, {transfer}: the error of the frequency goes from {off[0]:.2g} to {off[2]:.2g} on cells a quarter as large")
         ran = run("tests/verification/bar_5.yaml", ["bar"], transfer, {"bodies.bar.update": "musl", "constants.cells": 50, "history.every": 1})
         if not ran:
             return rows
         _, history, _ = ran
         ran = run("tests/verification/noise_transfers.yaml", ["flip"], transfer, {"expect": "[]"})
         noise = ran[1]["flip.kinetic"]
-        rows.append(row + [figure(1e5 * error) for error in errors] + [middle[0], figure(1e5 * (frequency(history["t"], history["speed"]) / 0.9 - 1)),
+        rows.append(row + [figure(1e5 * error) for error in off] + [middle[0], figure(1e5 * (frequency(history["t"], history["speed"]) / 0.9 - 1)),
                                                                      figure(100 * energy_lost(history)), figure(100 * noise[-1] / noise[0]) if noise[-1] > 1e-20 * noise[0] else "0", middle[1]])
     return rows
 
@@ -140,7 +111,7 @@ def contact_rows():
             return rows
         summary = ran[0]
         moved = summary["ledger"]["start"]["kinetic"]
-        e = {x["name"]: x["error"] for x in summary["expects"]}
+        e = errors(summary)
         rest = summary["ledger"]["remainder"] / moved
         row += [figure(100 * e["force"]), figure(100 * e["duration"]), figure(100 * e["speed of the second bar"]), figure(100 * rest), f"{summary['cpu_seconds']:.1f}"]
         if rest > 1e-3:
@@ -152,7 +123,7 @@ def contact_rows():
         missed = [x["name"] for x in summary["expects"] if not x["pass"]]
         if missed:
             failures.append(f"incline, {transfer}: {', '.join(missed)}")
-        e = {x["name"]: x["error"] for x in summary["expects"]}
+        e = errors(summary)
         rows.append(row + [figure(100 * e["slip after one second"]), figure(100 * e["friction force"]), figure(100 * e["ledger closes"]), f"{summary['cpu_seconds']:.1f}"])
     return rows
 
@@ -168,7 +139,7 @@ def column_rows():
             ran = run("tests/verification/column.yaml", ["column"], transfer, {"bodies.column.update": update})
             if not ran:
                 return rows
-            e = {x["name"]: x["error"] for x in ran[0]["expects"]}
+            e = errors(ran[0])
             row += [figure(100 * e["u at 10 MPa"]), figure(100 * e["axial stress"]), figure(100 * ran[0]["ledger"]["remainder_relative"])]
         rows.append(row)
     return rows
