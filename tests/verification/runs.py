@@ -18,8 +18,8 @@ class Runs:
         self.failures = []
         self.count = 0
 
-    def run(self, scene, settings, may_fail=False):
-        """Summary and columns of the history of a run, and its folder; None where it does not end."""
+    def run(self, scene, settings, may_fail=False, keep=False):
+        """Summary and columns of the history of a run, and its folder; None where it does not end, but with `keep`, which takes what there is up to there."""
         self.count += 1
         folder = f"{self.scratch}/{self.count}"
         command = [self.abut, "run", scene, "--quiet", "-j", "1", "-o", folder]
@@ -33,7 +33,8 @@ class Runs:
         if reason is not None:
             if not may_fail:
                 self.failures.append(f"{' '.join(command)}: {reason}")
-            return None
+            if not keep or not os.path.exists(f"{folder}/summary.json"):
+                return None
         with open(f"{folder}/summary.json") as stream:
             summary = json.load(stream)
         with open(f"{folder}/history.csv") as stream:
