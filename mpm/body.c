@@ -14,12 +14,8 @@ enum { WAVE_SPEED_EVERY = 16 };
 /* A thread is worth its waking up from about this many points on. */
 enum { POINTS_PER_THREAD = 4000 };
 
-/* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen): gimp .803 with two, .664 with four points
- * per direction. The linear basis has no positive limit (a point just behind a node); the figure is what it bears in practice. */
-static double stable_courant(const mpm_body *body) {
-    if (body->kernel->nodes == 3) return body->domain.spec->per_cell <= 4 ? 0.803 : 0.664;
-    return 0.664;
-}
+/* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen). */
+static double stable_courant(const mpm_body *body) { return body->kernel->courant[body->domain.spec->per_cell > 4]; }
 
 static void destroy(ab_domain *domain) {
     mpm_body *body = (mpm_body *)domain;
@@ -33,7 +29,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
     ab_memory_give(body->filter, body->filter_capacity * sizeof(double) * FILTER_RECORD * AB_TILE_NODES);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
-    ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * PATCH_DOUBLES);
+    ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
     mpm_outline_destroy(body->outline);
@@ -165,8 +161,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
             motion.centre[c] += s->first[c];
             low[c] = fmin(low[c], s->low[c]);
             high[c] = fmax(high[c], s->high[c]);
-            const double shift = body->kernel->nodes == 3 ? 0.5 : 0.0, at = (c ? tile->ty : tile->tx) * AB_TILE;
-            const double first = floor(s->low[c] * body->inverse_h - shift) - at, last = floor(s->high[c] * body->inverse_h - shift) - at;
+            const double at = (c ? tile->ty : tile->tx) * AB_TILE, first = s->begin[c] - at, last = s->end[c] - at;
             if (first < -1 || last > AB_TILE) body->sort_due = true;
             if (first < -AB_TILE || last >= 2 * AB_TILE) far = true;
         }
@@ -285,7 +280,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     p->tiles = body->tile_count;
     p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
-               body->patch_capacity * 8 * PATCH_DOUBLES + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
+               body->patch_capacity * 8 * mpm_patch_doubles(body) + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
                body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + (body->birth ? body->born * 16 : 0) +
                (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
@@ -353,7 +348,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     const ab_body_spec *spec = scene->bodies + index;
     mpm_body *body = calloc(1, sizeof *body);
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
-    body->kernel = !strcmp(spec->basis, "linear") ? &mpm_kernel_linear : &mpm_kernel_gimp;
+    body->kernel = mpm_kernel_of(spec->basis);
     body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
     body->domain = (ab_domain){.ops = body->update == MPM_USF   ? &OPS_USF
                                       : body->update == MPM_USL ? &OPS_USL

@@ -3,9 +3,14 @@
  * Points stand in blocks of eight; a block is `fields` rows of eight doubles, so that row f of block b is one vector. Each tile of the grid owns a run of
  * blocks, its points sorted by cell; the last block of a tile is filled up with massless copies. Positions are measured from the grid's corner.
  *
- * A tile scatters into a patch of its own (PATCH x PATCH nodes, one node more on each side than its stencils need at rest, so that points may drift by a
+ * A tile scatters into a patch of its own (patch x patch nodes, one node more on each side than its stencils need at rest, so that points may drift by a
  * cell before they are sorted again); then each tile adds up the nodes it owns from the nine patches around it, in one fixed order. No two
- * threads ever write to one place and no sum depends on their number. */
+ * threads ever write to one place and no sum depends on their number.
+ *
+ * How a basis (a kernel) is added: a source file mpm/kernel_<basis>.c that defines one mpm_kernel, its name in the table of mpm/kernels.c and in the words of
+ * `basis` (core/scene_keys.c). A basis whose weights are products of one weight per direction needs a branch in mpm/kernel.inc, which has all passes and is
+ * compiled per basis. Any other writes its own passes; what they owe each other is said at mpm_kernel. Nothing outside of a kernel assumes anything of a
+ * basis: not that weights are products, not where a stencil begins, not how far it reaches. */
 #ifndef AB_MPM_BODY_H
 #define AB_MPM_BODY_H
 
@@ -17,7 +22,9 @@
 /* Rows of a block every body has; the others are behind them where the plan asks for them. */
 enum { ROW_X = 0, ROW_V = 2, ROW_NEXT = 4, ROW_MASS = 6, ROW_VOLUME = 7, ROW_STRESS = 8, ROW_OTHERS = 12 };
 
-enum { PATCH = AB_TILE + 4, PATCH_NODES = PATCH * PATCH, PATCH_DOUBLES = 8 * PATCH_NODES };
+/* Nodes per direction of a patch, for stencils of 2 or 3 and of 4 nodes; a kernel has one of the two. */
+enum { MPM_PATCH_NARROW = AB_TILE + 4, MPM_PATCH_WIDE = AB_TILE + 5, MPM_PATCH_MOST = MPM_PATCH_WIDE * MPM_PATCH_WIDE };
+enum { MPM_STENCIL = 16 }; /* nodes of a point, at most */
 
 /* A node in a patch: mass, momentum, and the internal force in two halves (terms with dN/dx, terms with dN/dy) that assembly adds. */
 enum { NODE_MASS = 0, NODE_MOMENTUM = 1, NODE_FORCE_X = 4, NODE_FORCE_Y = 6 };
@@ -42,9 +49,11 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
 typedef struct mpm_sums {                                 /* of one tile, one step */
     double mass, kinetic, momentum[2], angular, first[2]; /* first: sum m x */
     double own_inertia;                                   /* sum m tr D of points with an affine part */
-    double potential, strain, plastic;                    /* increments */
-    double low[2], high[2];                               /* bounds of the new positions */
+    double potential;                                     /* increment */
+    double low[2], high[2];                               /* bounds of the new positions, m */
+    double begin[2], end[2];                              /* least and largest first node of the stencils there, from the grid's corner */
     double speed2;                                        /* largest v.v */
+    double strain, plastic;                               /* increments; these and the next are sums of the stress pass */
     double wave_speed;                                    /* largest, when asked for */
 } mpm_sums;
 
@@ -68,29 +77,50 @@ typedef struct mpm_load {      /* a piece of outline with a traction or a pressu
     double force[2];           /* N, in this step */
 } mpm_load;
 
-typedef struct
-    mpm_weights { /* of a block: values and gradients (1/m) of the 2 or 3 nodes per direction, and the first of them in the patch */
-    v8 n[2][3], g[2][3];
-    int32_t node[8]; /* patch node (j+1)*PATCH + i+1 for node (i, j) of the tile */
-} mpm_weights;
-
 typedef struct mpm_body mpm_body;
+
+/* What the points of a block are to the nodes: of node k = j*nodes + i, i and j from 0 to nodes-1, the value and the gradient (1/m) for each of the eight
+ * points. Nodes of no weight may be among them: values and gradients are 0 there. */
+typedef struct mpm_stencils {
+    double value[MPM_STENCIL][8], gx[MPM_STENCIL][8], gy[MPM_STENCIL][8] __attribute__((aligned(64)));
+    int32_t node[8]; /* place in the tile's patch of node k = 0; node k is at node + j*patch + i */
+} mpm_stencils;
 
 /* Ways to bring velocities back to the points, each a pass of its own. */
 enum { MPM_FINISH_BLEND, MPM_FINISH_AFFINE, MPM_FINISH_EXTENDED, MPM_FINISH_WAYS };
 
-typedef struct mpm_kernel { /* one per basis, from mpm/kernel.inc */
+/* A basis. Node (i, j) of a tile (its own: 0 .. AB_TILE-1) is at (j+1)*patch + i+1 in its patch. A point is kept by the tile of its first node, and may drift so
+ * far before the next sort that its first node is -1 or AB_TILE there, per direction; so patch >= AB_TILE + nodes + 1. Lanes without an id are massless copies of a
+ * point. */
+typedef struct mpm_kernel {
     const char *basis;
-    int nodes; /* per direction */
-    void (*weights)(const mpm_body *, const mpm_tile *, const double *block, mpm_weights *);
+    int nodes;                /* per direction, 4 at most: a point's stencil is nodes x nodes */
+    int patch;                /* MPM_PATCH_NARROW or MPM_PATCH_WIDE */
+    double reach;             /* cells: farther away than this in some direction a point has no weight */
+    bool domains;             /* points have domains of their own: rows half, inverse_half, and extent where they follow the stretch */
+    bool moment, same_spread; /* apic takes moments of the velocities; D is the same everywhere but at sides: see transfer.inc */
+    double courant
+        [2]; /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places: up to two points per direction, and more */
+    /* First nodes of the stencils of a block's points standing at rows x, x+1 (ROW_X or ROW_NEXT), counted from the grid's corner; with all rows up to date. */
+    void (*first)(const mpm_body *, const double *block, int x, int32_t node[2][8]);
+    void (*stencils)(const mpm_body *, const mpm_tile *, const double *block, mpm_stencils *);
     void (*spreads)(const mpm_body *, const mpm_tile *, const double *block, double d[2][8]); /* sum N (x_i - x_p)^2 by direction, m2 */
-    void (*scatter[2])(mpm_body *, size_t tile);                                              /* plain; with the affine part */
+    /* Weights on the stencil of the point in `lane` (order of mpm_stencils) for the force on a piece of outline about load->now, half of it load->stretch: such that
+     * it balances the internal force of a uniform stress. NULL: those of the point. */
+    void (*carry)(const mpm_body *, const mpm_tile *, const double *block, int lane, const mpm_load *, double value[MPM_STENCIL]);
+    /* The passes. scatter: patch records (NODE_*) of the points at ROW_X, plain and with the affine part. */
+    void (*scatter[2])(mpm_body *, size_t tile);
+    /* Velocities and places (ROW_NEXT) of the points from the nodes; with `remap` the new momenta onto the patch (pairs), at the old places. Sums all but the
+     * last three of mpm_sums. */
     void (*finish[MPM_FINISH_WAYS])(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
     void (*filter)(mpm_body *, size_t tile); /* xpic, fmpm: what FILTER_REST holds, to the points and back onto the patch */
-    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance,
-                  mpm_sums *); /* -1, or the block near which the material gave up */
+    /* Strain, stress, volumes and domains; with `advance` points then stand at ROW_NEXT. -1, or the block near which the material gave up. */
+    int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *);
 } mpm_kernel;
-extern const mpm_kernel mpm_kernel_linear, mpm_kernel_gimp;
+const mpm_kernel *mpm_kernel_of(const char *basis); /* kernels.c */
+
+/* True for a side that holds its nodes. At all others the grid goes on beyond. */
+static inline bool mpm_side_holds(ab_side_kind side) { return side == AB_SIDE_ROLLER || side == AB_SIDE_FIXED; }
 
 typedef enum mpm_update { MPM_USF, MPM_USL, MPM_MUSL } mpm_update;
 
@@ -100,10 +130,10 @@ struct mpm_body {
     const mpm_kernel *kernel;
     mpm_update update;
     double flip;
-    int finish;  /* MPM_FINISH_* */
-    bool moment; /* rows.affine holds B, not C: see transfer.inc */
-    int order;   /* xpic, fmpm: m */
-    bool full;   /* fmpm: the filter takes the velocity after the forces, not the one before */
+    int finish;                /* MPM_FINISH_* */
+    bool moment, keeps_moment; /* apic by moments of the velocities; rows.affine then holds B, not C: see transfer.inc */
+    int order;                 /* xpic, fmpm: m */
+    bool full;                 /* fmpm: the filter takes the velocity after the forces, not the one before */
     bool contiguous, gravity;
     int threads;
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
@@ -123,7 +153,7 @@ struct mpm_body {
     uint64_t *keys; /* of the tiles, ascending */
     size_t tile_count, tile_capacity;
     double *own;     /* OWN_RECORD * AB_TILE_NODES per tile */
-    double *patches; /* PATCH_DOUBLES per tile with points */
+    double *patches; /* mpm_patch_doubles per tile with points */
     double *filter;  /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
     size_t own_capacity, filter_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
@@ -168,6 +198,7 @@ void mpm_rows_plan(mpm_body *); /* which rows this scene needs */
 ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
 ab_status mpm_points_sort(mpm_body *, ab_report *); /* after begin's bounds were broken, or the first time */
 bool mpm_points_index(mpm_body *);                  /* from now on body->slot says where a point is; false: no memory */
+static inline size_t mpm_patch_doubles(const mpm_body *body) { return 8 * (size_t)(body->kernel->patch * body->kernel->patch); }
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
 
 /* material.c */
@@ -182,10 +213,10 @@ double mpm_affine_inner(const mpm_body *, size_t slot, double *spin, double *ine
 
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
-                          ab_report *);                               /* the tiles of `filled` (ascending) and their neighbours */
-long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key); /* place, or -1 */
-size_t mpm_tile_of_block(const mpm_body *, uint32_t block);           /* that owns it: tiles with points hold ascending runs */
-uint32_t mpm_dof_of(const mpm_tile *, int patch_node);                /* the node's number among the body's dofs */
+                          ab_report *);                                  /* the tiles of `filled` (ascending) and their neighbours */
+long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);    /* place, or -1 */
+size_t mpm_tile_of_block(const mpm_body *, uint32_t block);              /* that owns it: tiles with points hold ascending runs */
+uint32_t mpm_dof_of(const mpm_body *, const mpm_tile *, int patch_node); /* the node's number among the body's dofs */
 
 /* grid.c */
 void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);              /* old velocity, trial velocity */

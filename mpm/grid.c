@@ -4,13 +4,15 @@
 
 #include "mpm/body.h"
 
-/* sum[node*lanes + c]: what the nine patches around hold of this tile's own nodes. A patch reaches one node before and three nodes behind its tile. The
+/* sum[node*lanes + c]: what the nine patches around hold of this tile's own nodes. A patch reaches one node before and size - 1 - AB_TILE nodes behind its tile. The
  * tile's own patch first, then its neighbours', always in one order. */
-static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum) {
+static inline __attribute__((always_inline)) void add_some(const mpm_body *body, const mpm_tile *tile, int lanes, const int size,
+                                                           double *sum) {
+    const size_t doubles = 8 * (size_t)(size * size);
     if (tile->patch >= 0) {
-        const double *patch = body->patches + (size_t)tile->patch * PATCH_DOUBLES;
+        const double *patch = body->patches + (size_t)tile->patch * doubles;
         for (int j = 0; j < AB_TILE; ++j)
-            memcpy(sum + lanes * j * AB_TILE, patch + lanes * ((j + 1) * PATCH + 1), sizeof(double) * (size_t)(lanes * AB_TILE));
+            memcpy(sum + lanes * j * AB_TILE, patch + lanes * ((j + 1) * size + 1), sizeof(double) * (size_t)(lanes * AB_TILE));
     } else
         memset(sum, 0, sizeof(double) * (size_t)lanes * AB_TILE_NODES);
     for (int s = 0; s < 9; ++s) {
@@ -18,11 +20,11 @@ static inline __attribute__((always_inline)) void add_patches(const mpm_body *bo
         const mpm_tile *from = body->tiles + tile->around[s];
         if (from->patch < 0) continue;
         const int dx = s % 3 - 1, dy = s / 3 - 1;
-        const int i0 = dx > 0 ? AB_TILE - 1 : 0, i1 = dx < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
-        const int j0 = dy > 0 ? AB_TILE - 1 : 0, j1 = dy < 0 ? PATCH - 1 - AB_TILE : AB_TILE;
-        const double *patch = body->patches + (size_t)from->patch * PATCH_DOUBLES;
+        const int i0 = dx > 0 ? AB_TILE - 1 : 0, i1 = dx < 0 ? size - 1 - AB_TILE : AB_TILE;
+        const int j0 = dy > 0 ? AB_TILE - 1 : 0, j1 = dy < 0 ? size - 1 - AB_TILE : AB_TILE;
+        const double *patch = body->patches + (size_t)from->patch * doubles;
         for (int j = j0; j < j1; ++j) {
-            const double *row = patch + lanes * ((j - dy * AB_TILE + 1) * PATCH + i0 - dx * AB_TILE + 1);
+            const double *row = patch + lanes * ((j - dy * AB_TILE + 1) * size + i0 - dx * AB_TILE + 1);
             double *own = sum + lanes * (j * AB_TILE + i0);
             if (lanes == 8)
                 for (int i = 0; i < i1 - i0; ++i) v8_store(own + 8 * i, v8_load(own + 8 * i) + v8_load(row + 8 * i));
@@ -30,6 +32,12 @@ static inline __attribute__((always_inline)) void add_patches(const mpm_body *bo
                 for (int i = 0; i < i1 - i0; ++i) v2_store(own + 2 * i, v2_load(own + 2 * i) + v2_load(row + 2 * i));
         }
     }
+}
+static inline __attribute__((always_inline)) void add_patches(const mpm_body *body, const mpm_tile *tile, int lanes, double *sum) {
+    if (body->kernel->patch == MPM_PATCH_NARROW)
+        add_some(body, tile, lanes, MPM_PATCH_NARROW, sum);
+    else
+        add_some(body, tile, lanes, MPM_PATCH_WIDE, sum);
 }
 
 /* 1 where the sides leave the direction of this node free, 0 where they hold it. Nodes beyond a side are held like those on it. */
@@ -90,30 +98,38 @@ void mpm_grid_assemble_remap(mpm_body *body) {
     }
 }
 
-/* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. A record of `size` doubles per node;
+/* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. A record of `record` doubles per node;
  * two lanes: the first two of it; four: of the nodes' own records, the velocity and its change. */
-static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, const double *records, size_t size, int lanes,
-                                                        double *patch) {
+static inline __attribute__((always_inline)) void fetch_some(const mpm_body *body, size_t number, const double *records, size_t record,
+                                                             int lanes, const int size, double *patch) {
     const mpm_tile *tile = body->tiles + number;
     for (int s = 0; s < 9; ++s) {
         const int dx = s % 3 - 1, dy = s / 3 - 1;
-        const int i0 = dx < 0 ? AB_TILE - 1 : 0, i1 = dx > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
-        const int j0 = dy < 0 ? AB_TILE - 1 : 0, j1 = dy > 0 ? PATCH - 1 - AB_TILE : AB_TILE;
+        const int i0 = dx < 0 ? AB_TILE - 1 : 0, i1 = dx > 0 ? size - 1 - AB_TILE : AB_TILE;
+        const int j0 = dy < 0 ? AB_TILE - 1 : 0, j1 = dy > 0 ? size - 1 - AB_TILE : AB_TILE;
         for (int j = j0; j < j1; ++j) {
-            double *to = patch + lanes * ((j + dy * AB_TILE + 1) * PATCH + i0 + dx * AB_TILE + 1);
+            double *to = patch + lanes * ((j + dy * AB_TILE + 1) * size + i0 + dx * AB_TILE + 1);
             if (tile->around[s] < 0) {
                 memset(to, 0, sizeof(double) * (size_t)(lanes * (i1 - i0)));
                 continue;
             }
-            const double *own = records + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * size;
-            for (int i = 0; i < i1 - i0; ++i, own += size) {
+            const double *own = records + ((size_t)tile->around[s] * AB_TILE_NODES + (size_t)(j * AB_TILE + i0)) * record;
+            for (int i = 0; i < i1 - i0; ++i, own += record) {
                 const v2 now = v2_load(own);
                 v2_store(to + lanes * i, now);
                 if (lanes == 4) v2_store(to + lanes * i + 2, now - v2_load(own - OWN_VELOCITY + OWN_OLD));
             }
         }
     }
-    memset(patch + lanes * PATCH_NODES, 0, 8 * sizeof(double)); /* a row of four nodes may look past the last three */
+    memset(patch + lanes * size * size, 0, 8 * sizeof(double)); /* a row of four nodes may look past the last three */
+}
+
+static inline __attribute__((always_inline)) void fetch(const mpm_body *body, size_t number, const double *records, size_t record,
+                                                        int lanes, double *patch) {
+    if (body->kernel->patch == MPM_PATCH_NARROW)
+        fetch_some(body, number, records, record, lanes, MPM_PATCH_NARROW, patch);
+    else
+        fetch_some(body, number, records, record, lanes, MPM_PATCH_WIDE, patch);
 }
 
 void mpm_grid_fetch_velocity(const mpm_body *body, size_t number, double *pairs) {

@@ -1,9 +1,8 @@
 /* loads.c: tractions and pressures on a body's outline. A traction acts on the outline's initial length and keeps its direction, a pressure on the outline as
  * it lies now: each piece stretches and turns with the point under it, and meets its neighbours half-way.
  *
- * The gimp basis averages hat functions over the points' domains, so that the internal force of a uniform stress is the integral of hat functions over
- * the surface of the domains. A traction is mapped in the same way, hats averaged over the piece of outline where it stands now, and balances that stress
- * to rounding; mapped from the middle of the point under it, it would leave a layer of wrong stress. A linear basis knows points only. */
+ * How a piece of outline pulls at the nodes is the basis' own (mpm_kernel.carry): such that a traction balances the internal force of a uniform stress. Mapped from
+ * the middle of the point under it, it would leave a layer of wrong stress. A linear basis knows points only. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -70,61 +69,30 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
 }
 
 typedef struct reach {
-    double n[9], g[9][2];
-    size_t node[9];
+    double n[MPM_STENCIL], g[MPM_STENCIL][2];
+    size_t node[MPM_STENCIL];
     int count;
     const mpm_tile *tile;
 } reach;
-
-/* Integral of the hat function from -1 to u. */
-static double hat_integral(double u) {
-    if (u <= -1.0) return 0.0;
-    if (u >= 1.0) return 1.0;
-    return u < 0.0 ? 0.5 * (1.0 + u) * (1.0 + u) : 1.0 - 0.5 * (1.0 - u) * (1.0 - u);
-}
-
-/* Hat functions of three nodes in a row averaged over [s-l, s+l]; s in cells from the first node, l kept so small that they add up to 1. */
-static void average_hats(double s, double l, double n[3]) {
-    s = fmin(fmax(s, 0.0), 2.0);
-    l = fmin(l, fmin(s, 2.0 - s));
-    for (int i = 0; i < 3; ++i) {
-        const double u = s - i;
-        n[i] = l > 1e-6 ? (hat_integral(u + l) - hat_integral(u - l)) / (2.0 * l) : fmax(1.0 - fabs(u), 0.0);
-    }
-}
-
-/* The same, over no more than the point's own domain [x-domain, x+domain]: beyond it there are nodes that the body gives no mass, and force on them would be lost.
- * A piece along a side of its domain is within it; of one that runs across, the part about its middle is taken, so that its moment stays. */
-static void average_near(double s, double l, double x, double domain, double n[3]) {
-    const double off = fmin(fmax(s - x, -domain), domain);
-    average_hats(x + off, fmin(l, domain - fabs(off)), n);
-}
 
 /* The nodes that carry a load: values, gradients at the point under it, and places in its tile's patch. */
 static reach reach_of(const mpm_body *body, const mpm_load *load) {
     const uint32_t slot = body->slot[load->id];
     reach r = {.count = 0};
     r.tile = body->tiles + mpm_tile_of_block(body, slot / 8);
-    mpm_weights w;
+    mpm_stencils w;
     const double *block = mpm_block(body, slot / 8);
-    body->kernel->weights(body, r.tile, block, &w);
+    body->kernel->stencils(body, r.tile, block, &w);
     const int l = (int)(slot % 8), nodes = body->kernel->nodes;
-    const int first[2] = {w.node[l] % PATCH - 1 + r.tile->tx * AB_TILE, w.node[l] / PATCH - 1 + r.tile->ty * AB_TILE};
-    double n[2][3];
-    for (int c = 0; c < 2; ++c) {
-        for (int i = 0; i < nodes; ++i) n[c][i] = w.n[c][i][l];
-        if (nodes == 3)
-            average_near(load->now[c] * body->inverse_h - first[c], fabs(load->stretch[c]) * body->inverse_h,
-                         block[8 * (ROW_X + c) + l] * body->inverse_h - first[c], block[8 * (body->rows.half + c) + l] * body->inverse_h,
-                         n[c]);
+    if (body->kernel->carry)
+        body->kernel->carry(body, r.tile, block, l, load, r.n);
+    else
+        for (int k = 0; k < nodes * nodes; ++k) r.n[k] = w.value[k][l];
+    for (; r.count < nodes * nodes; ++r.count) {
+        r.g[r.count][0] = w.gx[r.count][l];
+        r.g[r.count][1] = w.gy[r.count][l];
+        r.node[r.count] = (size_t)(w.node[l] + r.count / nodes * body->kernel->patch + r.count % nodes);
     }
-    for (int j = 0; j < nodes; ++j)
-        for (int i = 0; i < nodes; ++i) {
-            r.n[r.count] = n[0][i] * n[1][j];
-            r.g[r.count][0] = w.g[0][i][l] * w.n[1][j][l];
-            r.g[r.count][1] = w.n[0][i][l] * w.g[1][j][l];
-            r.node[r.count++] = (size_t)(w.node[l] + j * PATCH + i);
-        }
     return r;
 }
 
@@ -176,7 +144,7 @@ void mpm_loads_scatter(mpm_body *body, const ab_step *step) {
         if (body->slot[load->id] == UINT32_MAX) continue;
         find_force(body, step->time + 0.5 * step->dt, load);
         const reach r = reach_of(body, load);
-        double *patch = body->patches + (size_t)r.tile->patch * PATCH_DOUBLES;
+        double *patch = body->patches + (size_t)r.tile->patch * mpm_patch_doubles(body);
         for (int i = 0; i < r.count; ++i)
             for (int c = 0; c < 2; ++c) patch[8 * r.node[i] + NODE_FORCE_X + (size_t)c] += r.n[i] * load->force[c];
     }
@@ -188,7 +156,7 @@ void mpm_loads_work(mpm_body *body, const ab_step *step) {
         if (body->slot[load->id] == UINT32_MAX) continue;
         const reach r = reach_of(body, load);
         for (int i = 0; i < r.count; ++i) {
-            const double *own = body->own + (size_t)mpm_dof_of(r.tile, (int)r.node[i]) * OWN_RECORD;
+            const double *own = body->own + (size_t)mpm_dof_of(body, r.tile, (int)r.node[i]) * OWN_RECORD;
             for (int c = 0; c < 2; ++c)
                 body->energy.external += step->dt * r.n[i] * load->force[c] * 0.5 * (own[OWN_VELOCITY + c] + own[OWN_OLD + c]);
         }
@@ -203,7 +171,7 @@ void mpm_loads_follow(mpm_body *body, const ab_step *step) {
         const reach r = reach_of(body, load);
         double arm[2] = {load->arm[0], load->arm[1]}, half[2] = {load->half[0], load->half[1]};
         for (int i = 0; i < r.count; ++i) {
-            const double *own = body->own + (size_t)mpm_dof_of(r.tile, (int)r.node[i]) * OWN_RECORD;
+            const double *own = body->own + (size_t)mpm_dof_of(body, r.tile, (int)r.node[i]) * OWN_RECORD;
             const double along_arm = step->dt * (r.g[i][0] * load->arm[0] + r.g[i][1] * load->arm[1]);
             const double along_half = step->dt * (r.g[i][0] * load->half[0] + r.g[i][1] * load->half[1]);
             for (int c = 0; c < 2; ++c) {

@@ -133,13 +133,13 @@ ab_status mpm_outline_move(mpm_body *body, const ab_step *step, ab_report *repor
 static void gradient_at(const mpm_body *body, uint32_t slot, double dt, double gradient[2][2]) {
     const mpm_tile *tile = body->tiles + mpm_tile_of_block(body, slot / 8);
     const int l = (int)(slot % 8), nodes = body->kernel->nodes;
-    mpm_weights w;
-    body->kernel->weights(body, tile, mpm_block(body, slot / 8), &w);
+    mpm_stencils w;
+    body->kernel->stencils(body, tile, mpm_block(body, slot / 8), &w);
     for (int c = 0; c < 2; ++c) gradient[c][0] = gradient[c][1] = 0.0;
     for (int j = 0; j < nodes; ++j)
         for (int i = 0; i < nodes; ++i) {
-            const double *own = body->own + (size_t)mpm_dof_of(tile, w.node[l] + j * PATCH + i) * OWN_RECORD;
-            const double gx = dt * w.g[0][i][l] * w.n[1][j][l], gy = dt * w.n[0][i][l] * w.g[1][j][l];
+            const double *own = body->own + (size_t)mpm_dof_of(body, tile, w.node[l] + j * body->kernel->patch + i) * OWN_RECORD;
+            const double gx = dt * w.gx[j * nodes + i][l], gy = dt * w.gy[j * nodes + i][l];
             for (int c = 0; c < 2; ++c) {
                 gradient[c][0] += gx * own[OWN_VELOCITY + c];
                 gradient[c][1] += gy * own[OWN_VELOCITY + c];

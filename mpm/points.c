@@ -15,9 +15,9 @@ void mpm_rows_plan(mpm_body *body) {
         const bool mine = contact->body[0] == body->domain.index || contact->body[1] == body->domain.index;
         if (mine && (contact->finder->class_.needs & (AB_NEED_NEAR_POINTS | AB_NEED_SURFACE))) gap = true;
     }
-    const bool gimp = body->kernel->nodes == 3;
-    if (gap || (gimp && body->contiguous)) rows.extent = rows.count, rows.count += 3;
-    if (gimp) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
+    const bool domains = body->kernel->domains;
+    if (gap || (domains && body->contiguous)) rows.extent = rows.count, rows.count += 3;
+    if (domains) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
     if (body->finish == MPM_FINISH_AFFINE) rows.affine = rows.count, rows.count += 4;
     rows.states = ab_state_count(class_);
@@ -26,8 +26,6 @@ void mpm_rows_plan(mpm_body *body) {
     body->rows = rows;
 }
 
-/* Where a position (one direction, in cells from the grid's corner) has the first node of its stencil. */
-static int32_t first_node(const mpm_body *body, double cells) { return (int32_t)floor(body->kernel->nodes == 3 ? cells - 0.5 : cells); }
 static int32_t tile_of(int32_t node) { return node >= 0 ? node / AB_TILE : -((AB_TILE - 1 - node) / AB_TILE); }
 
 typedef struct place {
@@ -70,19 +68,49 @@ static void pad_block(const mpm_body *body, double *block, uint64_t *ids, int us
     }
 }
 
+/* Place, size and shape of a point of the fill in a lane of a block. */
+static void place_point(const mpm_body *body, const ab_fill *fill, size_t i, double *b, size_t l) {
+    const mpm_rows rows = body->rows;
+    const double x[2] = {fill->x[i] - body->origin[0], fill->y[i] - body->origin[1]}, *a = fill->extent + 3 * i;
+    for (int c = 0; c < 2; ++c) b[8 * (ROW_X + c) + l] = b[8 * (ROW_NEXT + c) + l] = x[c];
+    b[8 * ROW_VOLUME + l] = fill->volume[i];
+    if (rows.extent >= 0)
+        for (int c = 0; c < 3; ++c) b[8 * (rows.extent + c) + l] = a[c];
+    if (rows.half >= 0)
+        for (int c = 0; c < 2; ++c) {
+            const double half = fmin(sqrt(a[c]), 0.5 * body->h);
+            b[8 * (rows.half + c) + l] = half;
+            b[8 * (rows.inverse_half + c) + l] = 1.0 / half;
+        }
+    if (rows.gradient >= 0) b[8 * rows.gradient + l] = b[8 * (rows.gradient + 3) + l] = 1.0;
+}
+
+/* Where the points of the fill stand: tile, cell, number. False: no memory. */
+static bool find_places(const mpm_body *body, const ab_fill *fill, place *places) {
+    double *block = aligned_alloc(64, 64 * (size_t)body->rows.count);
+    if (!block) return false;
+    memset(block, 0, 64 * (size_t)body->rows.count);
+    for (size_t p = 0; p < fill->count; p += 8) {
+        int32_t node[2][8];
+        for (size_t l = 0; l < 8; ++l) place_point(body, fill, p + l < fill->count ? p + l : fill->count - 1, block, l);
+        body->kernel->first(body, block, ROW_X, node);
+        for (size_t l = 0; l < 8 && p + l < fill->count; ++l) {
+            const int32_t tx = tile_of(node[0][l]), ty = tile_of(node[1][l]);
+            places[p + l] = (place){ab_tile_key(tx, ty), (uint32_t)((node[1][l] - ty * AB_TILE) * AB_TILE + node[0][l] - tx * AB_TILE),
+                                    (uint32_t)(p + l)};
+        }
+    }
+    free(block);
+    return true;
+}
+
 ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *report) {
     const size_t count = fill->count;
     place *places = malloc((count + 1) * sizeof *places);
     uint64_t *filled = malloc((count + 1) * sizeof *filled);
-    if (!places || !filled) {
+    if (!places || !filled || !find_places(body, fill, places)) {
         free(places), free(filled);
         return no_memory(body, count, report);
-    }
-    for (size_t p = 0; p < count; ++p) {
-        const int32_t i = first_node(body, (fill->x[p] - body->origin[0]) * body->inverse_h),
-                      j = first_node(body, (fill->y[p] - body->origin[1]) * body->inverse_h);
-        const int32_t tx = tile_of(i), ty = tile_of(j);
-        places[p] = (place){ab_tile_key(tx, ty), (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE), (uint32_t)p};
     }
     qsort(places, count, sizeof *places, compare_places);
     size_t tiles = 0, blocks = 0;
@@ -100,7 +128,6 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
         free(places);
         return status;
     }
-    const mpm_rows rows = body->rows;
     const double density = body->material->density;
     size_t block = 0;
     for (size_t p = 0; p < count;) {
@@ -114,10 +141,9 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
             const size_t slot = block * 8 + (k - p), i = places[k].index;
             double *b = mpm_block(body, slot / 8);
             const size_t l = slot % 8;
-            const double x[2] = {fill->x[i] - body->origin[0], fill->y[i] - body->origin[1]};
             const double volume = fill->volume[i];
+            place_point(body, fill, i, b, l);
             for (int c = 0; c < 2; ++c) {
-                b[8 * (ROW_X + c) + l] = b[8 * (ROW_NEXT + c) + l] = x[c];
                 const ab_body_spec *spec = body->domain.spec;
                 const double at[2] = {fill->x[i], fill->y[i]}, v = ab_number_at(spec->velocity + c, 0.0, at[0], at[1], 0.0);
                 if (status == AB_OK)
@@ -125,18 +151,7 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
                 b[8 * (ROW_V + c) + l] = v;
             }
             b[8 * ROW_MASS + l] = density * volume;
-            b[8 * ROW_VOLUME + l] = volume;
             if (density * volume > body->point_mass) body->point_mass = density * volume;
-            const double *a = fill->extent + 3 * i;
-            if (rows.extent >= 0)
-                for (int c = 0; c < 3; ++c) b[8 * (rows.extent + c) + l] = a[c];
-            if (rows.half >= 0)
-                for (int c = 0; c < 2; ++c) {
-                    const double half = fmin(sqrt(a[c]), 0.5 * body->h);
-                    b[8 * (rows.half + c) + l] = half;
-                    b[8 * (rows.inverse_half + c) + l] = 1.0 / half;
-                }
-            if (rows.gradient >= 0) b[8 * rows.gradient + l] = b[8 * (rows.gradient + 3) + l] = 1.0;
             body->ids[slot] = i;
         }
         const size_t used = (q - p) % 8;
@@ -170,6 +185,8 @@ static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *mov
     memset(counts, 0, 9 * sizeof *counts);
     for (uint32_t b = 0; b < tile->blocks; ++b) {
         const double *block = mpm_block(body, tile->first + b);
+        int32_t node[2][8];
+        body->kernel->first(body, block, ROW_X, node);
         for (int l = 0; l < 8; ++l) {
             const size_t slot = (size_t)(tile->first + b) * 8 + (size_t)l;
             if (body->ids[slot] == UINT64_MAX) {
@@ -182,8 +199,7 @@ static void find_moves(const mpm_body *body, const mpm_tile *tile, uint16_t *mov
                 moves[slot] = UINT16_MAX;
                 continue;
             }
-            const int32_t i = first_node(body, x * body->inverse_h) - tile->tx * AB_TILE,
-                          j = first_node(body, y * body->inverse_h) - tile->ty * AB_TILE;
+            const int32_t i = node[0][l] - tile->tx * AB_TILE, j = node[1][l] - tile->ty * AB_TILE;
             const int dx = i < 0 ? -1 : i >= AB_TILE ? 1 : 0, dy = j < 0 ? -1 : j >= AB_TILE ? 1 : 0;
             const int code = (dy + 1) * 3 + dx + 1, cell = (j - dy * AB_TILE) * AB_TILE + i - dx * AB_TILE;
             moves[slot] = (uint16_t)(code * AB_TILE_NODES + cell);

@@ -4,8 +4,6 @@
 
 #include "mpm/body.h"
 
-enum { MOST_NODES = 9 }; /* of one point */
-
 struct mpm_surface {
     size_t capacity, count; /* points; ld of the arrays */
     double *position, *extent, *area;
@@ -50,8 +48,8 @@ static bool reserve_points(struct mpm_surface *s) {
     if (s->count + 8 <= old) return true;
     const size_t n = (2 * s->count + 64) / 8 * 8;
     if (!grow(&s->position, 2 * n, sizeof(double)) || !grow(&s->extent, 3 * n, sizeof(double)) || !grow(&s->area, n, sizeof(double)) ||
-        !grow(&s->key, n, sizeof *s->key) || !grow(&s->start, n + 1, sizeof *s->start) || !grow(&s->dof, MOST_NODES * n, sizeof *s->dof) ||
-        !grow(&s->weight, MOST_NODES * n, sizeof(double)))
+        !grow(&s->key, n, sizeof *s->key) || !grow(&s->start, n + 1, sizeof *s->start) || !grow(&s->dof, MPM_STENCIL * n, sizeof *s->dof) ||
+        !grow(&s->weight, MPM_STENCIL * n, sizeof(double)))
         return false;
     for (size_t i = s->count; i-- > 0;) s->position[n + i] = s->position[old + i];
     for (size_t row = 2; row > 0; --row)
@@ -86,18 +84,19 @@ static size_t candidate_tiles(mpm_body *body, const ab_region *region) {
 }
 
 /* The region's cells around a tile, its own from (1, 1) on, as places in a patch; the bounds of their corners in m. False: none. */
-static bool cells_around(const mpm_body *body, const mpm_tile *tile, const ab_region *region, bool wanted[PATCH_NODES], double low[2],
+static bool cells_around(const mpm_body *body, const mpm_tile *tile, const ab_region *region, bool wanted[MPM_PATCH_MOST], double low[2],
                          double high[2]) {
-    int first[2] = {PATCH, PATCH}, last[2] = {-1, -1};
-    for (int i = 0; i < PATCH_NODES; ++i) wanted[i] = false;
+    const int patch = body->kernel->patch;
+    int first[2] = {patch, patch}, last[2] = {-1, -1};
+    for (int i = 0; i < patch * patch; ++i) wanted[i] = false;
     for (int d = 0; d < 9; ++d) {
         const int dx = d % 3 - 1, dy = d / 3 - 1;
         const long at = mpm_tile_find(region->key, region->count, ab_tile_key(tile->tx + dx, tile->ty + dy));
         if (at < 0) continue;
         for (uint64_t bits = region->cells[at]; bits; bits &= bits - 1) {
             const int bit = __builtin_ctzll(bits), i = bit % AB_TILE + dx * AB_TILE + 1, j = bit / AB_TILE + dy * AB_TILE + 1;
-            if (i < 0 || j < 0 || i >= PATCH || j >= PATCH) continue;
-            wanted[j * PATCH + i] = true;
+            if (i < 0 || j < 0 || i >= patch || j >= patch) continue;
+            wanted[j * patch + i] = true;
             if (i < first[0]) first[0] = i;
             if (j < first[1]) first[1] = j;
             if (i > last[0]) last[0] = i;
@@ -113,7 +112,7 @@ static bool cells_around(const mpm_body *body, const mpm_tile *tile, const ab_re
 }
 
 /* Adds the point in lane l of a block. Weights are the basis' own: they add up to 1, and a node with weight has mass. */
-static void add_point(mpm_body *body, const mpm_tile *tile, const double *block, int l, uint64_t id, const mpm_weights *w) {
+static void add_point(mpm_body *body, const mpm_tile *tile, const double *block, int l, uint64_t id, const mpm_stencils *w) {
     struct mpm_surface *s = body->surface;
     const size_t to = s->count++, ld = s->capacity;
     const int nodes = body->kernel->nodes;
@@ -125,9 +124,9 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
     double sum = 0.0;
     for (int j = 0; j < nodes; ++j)
         for (int i = 0; i < nodes; ++i) {
-            const double value = w->n[0][i][l] * w->n[1][j][l];
+            const double value = w->value[j * nodes + i][l];
             if (!(value > 0.0)) continue;
-            const uint32_t dof = mpm_dof_of(tile, w->node[l] + j * PATCH + i);
+            const uint32_t dof = mpm_dof_of(body, tile, w->node[l] + j * body->kernel->patch + i);
             if (!(body->own[(size_t)dof * OWN_RECORD + OWN_MASS] > 0.0)) continue;
             s->dof[at] = dof;
             s->weight[at++] = value;
@@ -146,9 +145,10 @@ ab_status mpm_surface_points(ab_domain *domain, const ab_region *region, ab_surf
     if (!reserve_points(s)) goto no_memory;
     s->start[0] = 0;
     const size_t tiles = candidate_tiles(body, region);
+    const int patch = body->kernel->patch;
     for (size_t k = 0; k < tiles; ++k) {
         const mpm_tile *tile = body->tiles + s->tiles[k];
-        bool wanted[PATCH_NODES];
+        bool wanted[MPM_PATCH_MOST];
         double low[2], high[2];
         if (!cells_around(body, tile, region, wanted, low, high)) continue;
         for (uint32_t b = tile->first; b < tile->first + tile->blocks; ++b) {
@@ -156,15 +156,15 @@ ab_status mpm_surface_points(ab_domain *domain, const ab_region *region, ab_surf
             const v8 x = v8_load(block + 8 * ROW_X), y = v8_load(block + 8 * (ROW_X + 1));
             const v8_mask inside = (x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1]);
             bool weighed = false;
-            mpm_weights w;
+            mpm_stencils w;
             for (int l = 0; l < 8; ++l) {
                 if (!inside[l] || body->ids[b * 8 + (size_t)l] == UINT64_MAX) continue;
                 const int i = (int)floor(x[l] * body->inverse_h) - tile->tx * AB_TILE + 1,
                           j = (int)floor(y[l] * body->inverse_h) - tile->ty * AB_TILE + 1;
-                if (i < 0 || j < 0 || i >= PATCH || j >= PATCH || !wanted[j * PATCH + i]) continue;
+                if (i < 0 || j < 0 || i >= patch || j >= patch || !wanted[j * patch + i]) continue;
                 if (!weighed) {
                     if (!reserve_points(s)) goto no_memory;
-                    body->kernel->weights(body, tile, block, &w);
+                    body->kernel->stencils(body, tile, block, &w);
                     weighed = true;
                 }
                 add_point(body, tile, block, l, body->ids[b * 8 + (size_t)l], &w);

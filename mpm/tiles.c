@@ -30,7 +30,7 @@ static bool tile_is_held(const mpm_body *body, int32_t tx, int32_t ty) {
     const bool held[4] = {tx * AB_TILE <= 0, tx * AB_TILE + AB_TILE - 1 >= last[0], ty * AB_TILE <= 0,
                           ty * AB_TILE + AB_TILE - 1 >= last[1]};
     for (int s = 0; s < AB_SIDES; ++s)
-        if (held[s] && (side[s] == AB_SIDE_ROLLER || side[s] == AB_SIDE_FIXED)) return true;
+        if (held[s] && mpm_side_holds(side[s])) return true;
     return false;
 }
 
@@ -53,7 +53,7 @@ ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, 
                        (body->order < 2 || ab_memory_grow((void **)&body->filter, &body->filter_capacity, unique,
                                                           sizeof(double) * FILTER_RECORD * AB_TILE_NODES)) &&
                        ab_memory_grow((void **)&body->sums, &body->sums_capacity, unique, sizeof *body->sums) &&
-                       ab_memory_grow((void **)&body->patches, &body->patch_capacity, count, sizeof(double) * PATCH_DOUBLES);
+                       ab_memory_grow((void **)&body->patches, &body->patch_capacity, count, sizeof(double) * mpm_patch_doubles(body));
     body->tile_capacity = tiles_capacity;
     body->own_capacity = own_capacity;
     if (!grown) {
@@ -96,8 +96,8 @@ size_t mpm_tile_of_block(const mpm_body *body, uint32_t block) {
     return found;
 }
 
-uint32_t mpm_dof_of(const mpm_tile *tile, int patch_node) {
-    const int i = patch_node % PATCH - 1, j = patch_node / PATCH - 1;
+uint32_t mpm_dof_of(const mpm_body *body, const mpm_tile *tile, int patch_node) {
+    const int patch = body->kernel->patch, i = patch_node % patch - 1, j = patch_node / patch - 1;
     const int dx = i < 0 ? -1 : i >= AB_TILE ? 1 : 0, dy = j < 0 ? -1 : j >= AB_TILE ? 1 : 0;
     return (uint32_t)tile->around[(dy + 1) * 3 + dx + 1] * AB_TILE_NODES + (uint32_t)((j - dy * AB_TILE) * AB_TILE + i - dx * AB_TILE);
 }

@@ -84,8 +84,8 @@ static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t coun
 }
 
 /* Number of the wanted node + 1 at each place of a tile's patch, 0 elsewhere. Nodes are ascending, so those of a tile are a run. */
-static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t count, uint32_t wanted[PATCH_NODES]) {
-    memset(wanted, 0, PATCH_NODES * sizeof *wanted);
+static bool wanted_in_patch(const mpm_tile *tile, int patch, const uint32_t *nodes, size_t count, uint32_t wanted[MPM_PATCH_MOST]) {
+    memset(wanted, 0, (size_t)(patch * patch) * sizeof *wanted);
     bool any = false;
     for (int s = 0; s < 9; ++s) {
         if (tile->around[s] < 0) continue;
@@ -101,8 +101,8 @@ static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t 
         for (; low < count && nodes[low] < first + AB_TILE_NODES; ++low) {
             const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + 1,
                       j = n / AB_TILE + (s / 3 - 1) * AB_TILE + 1;
-            if (i < 0 || j < 0 || i >= PATCH || j >= PATCH) continue;
-            wanted[j * PATCH + i] = (uint32_t)low + 1;
+            if (i < 0 || j < 0 || i >= patch || j >= patch) continue;
+            wanted[j * patch + i] = (uint32_t)low + 1;
             any = true;
         }
     }
@@ -110,24 +110,24 @@ static bool wanted_in_patch(const mpm_tile *tile, const uint32_t *nodes, size_t 
 }
 
 /* Gradients at the wanted nodes and the list of points near them, from one tile's points. */
-static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[PATCH_NODES], uint32_t needs, size_t *entries) {
+static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[MPM_PATCH_MOST], uint32_t needs, size_t *entries) {
     struct mpm_trace *t = body->trace;
-    const int nodes = body->kernel->nodes;
+    const int nodes = body->kernel->nodes, patch = body->kernel->patch;
     const size_t ld = t->capacity;
-    bool reached[PATCH_NODES] = {false};                /* by the stencil that begins here */
-    double low[2] = {PATCH, PATCH}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
-    for (int n = 0; n < PATCH_NODES; ++n) {
+    bool reached[MPM_PATCH_MOST] = {false};             /* by the stencil that begins here */
+    double low[2] = {patch, patch}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
+    for (int n = 0; n < patch * patch; ++n) {
         if (!wanted[n]) continue;
-        for (int j = 0; j < nodes && j <= n / PATCH; ++j)
-            for (int i = 0; i < nodes && i <= n % PATCH; ++i) reached[n - j * PATCH - i] = true;
-        const double at[2] = {n % PATCH - 1, n / PATCH - 1};
+        for (int j = 0; j < nodes && j <= n / patch; ++j)
+            for (int i = 0; i < nodes && i <= n % patch; ++i) reached[n - j * patch - i] = true;
+        const double at[2] = {n % patch - 1, n / patch - 1};
         for (int c = 0; c < 2; ++c) {
             if (at[c] < low[c]) low[c] = at[c];
             if (at[c] > high[c]) high[c] = at[c];
         }
     }
     for (int c = 0; c < 2; ++c) {
-        const double corner = (c ? tile->ty : tile->tx) * AB_TILE, farthest = 0.5 * nodes;
+        const double corner = (c ? tile->ty : tile->tx) * AB_TILE, farthest = body->kernel->reach;
         low[c] = (corner + low[c] - farthest) * body->h;
         high[c] = (corner + high[c] + farthest) * body->h;
     }
@@ -138,13 +138,13 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
         int64_t any = 0;
         for (int l = 0; l < 8; ++l) any |= inside[l];
         if (!any) continue;
-        mpm_weights w;
-        body->kernel->weights(body, tile, block, &w);
+        mpm_stencils w;
+        body->kernel->stencils(body, tile, block, &w);
         for (int l = 0; l < 8; ++l) {
             if (!reached[w.node[l]]) continue;
             const uint32_t slot = (tile->first + b) * 8 + (uint32_t)l;
             if (body->ids[slot] == UINT64_MAX) continue;
-            if (*entries + 9 > t->entry_capacity) {
+            if (*entries + MPM_STENCIL > t->entry_capacity) {
                 const size_t more = 2 * t->entry_capacity + 1024;
                 if (!grow(&t->entries, more, sizeof *t->entries)) return false;
                 t->entry_capacity = more;
@@ -152,10 +152,10 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
             const double mass = block[8 * ROW_MASS + l], volume = block[8 * ROW_VOLUME + l];
             for (int j = 0; j < nodes; ++j)
                 for (int i = 0; i < nodes; ++i) {
-                    const uint32_t at = wanted[w.node[l] + j * PATCH + i];
+                    const uint32_t at = wanted[w.node[l] + j * patch + i];
                     if (!at) continue;
-                    const double value = w.n[0][i][l] * w.n[1][j][l];
-                    const double gx = w.g[0][i][l] * w.n[1][j][l], gy = w.n[0][i][l] * w.g[1][j][l];
+                    const int k = j * nodes + i;
+                    const double value = w.value[k][l], gx = w.gx[k][l], gy = w.gy[k][l];
                     t->mass_gradient[at - 1] += mass * gx;
                     t->mass_gradient[ld + at - 1] += mass * gy;
                     t->area_vector[at - 1] += volume * gx;
@@ -190,9 +190,10 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
     if (needs & (AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS)) {
         const size_t tiles = candidate_tiles(body, nodes, count);
         for (size_t k = 0; k < tiles; ++k) {
-            uint32_t wanted[PATCH_NODES];
+            uint32_t wanted[MPM_PATCH_MOST];
             const mpm_tile *tile = body->tiles + t->tile_list[k];
-            if (wanted_in_patch(tile, nodes, count, wanted) && !look_at_tile(body, tile, wanted, needs, &entries)) goto no_memory;
+            if (wanted_in_patch(tile, body->kernel->patch, nodes, count, wanted) && !look_at_tile(body, tile, wanted, needs, &entries))
+                goto no_memory;
         }
     }
     if (needs & AB_NEED_NEAR_POINTS) { /* counting sort by node keeps the order of tiles and points */

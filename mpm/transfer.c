@@ -9,7 +9,8 @@ void mpm_transfer_choose(mpm_body *body) {
     body->flip = spec->flip;
     body->finish = MPM_FINISH_BLEND;
     if (spec->transfer == AB_TRANSFER_APIC || spec->transfer == AB_TRANSFER_TPIC) body->finish = MPM_FINISH_AFFINE;
-    body->moment = spec->transfer == AB_TRANSFER_APIC && body->kernel->nodes == 3;
+    body->moment = spec->transfer == AB_TRANSFER_APIC && body->kernel->moment;
+    body->keeps_moment = body->moment && !body->kernel->same_spread;
     if (spec->transfer == AB_TRANSFER_XPIC || spec->transfer == AB_TRANSFER_FMPM) {
         body->order = spec->order;
         body->full = spec->transfer == AB_TRANSFER_FMPM;
@@ -67,7 +68,7 @@ void mpm_affine_start(mpm_body *body, const ab_fill *fill) {
                 for (int c = 0; c < 4; ++c) {
                     const int along = c % 2;
                     const double slope = slope_of(spec->velocity + c / 2, place, along, sqrt(fill->extent[3 * id + (size_t)along]));
-                    block[8 * (body->rows.affine + c) + (int)l] = body->moment ? slope * d[along][l] : slope;
+                    block[8 * (body->rows.affine + c) + (int)l] = body->keeps_moment ? slope * d[along][l] : slope;
                 }
             }
         }
@@ -82,8 +83,8 @@ double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin, double 
     body->kernel->spreads(body, body->tiles + mpm_tile_of_block(body, (uint32_t)(slot / 8)), block, d);
     for (int c = 0; c < 4; ++c) {
         const double spread = d[c % 2][slot % 8], value = kept[8 * c];
-        b[c] = body->moment ? value : value * spread;
-        inner += b[c] * (body->moment ? value / spread : value);
+        b[c] = body->keeps_moment ? value : value * spread;
+        inner += b[c] * (body->keeps_moment ? value / spread : value);
     }
     *spin = b[2] - b[1];
     *inertia = d[0][slot % 8] + d[1][slot % 8];

@@ -123,7 +123,7 @@ static const mistake mistakes[] = {
     {"{rule: gauss, per_cell: 9}", "{rule: cvt}", "'cvt' is not in this version yet; there is: regular, gauss"},
     {"{rule: gauss, per_cell: 9}", "{per_cell: 0}", "per_cell is 0 but must be at least 1"},
     {"    method: material-points", "    method: finite-element", "unknown word 'finite-element'; did you mean 'finite-elements'?"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    basis: bspline2", "'bspline2' is not in this version yet; there is: linear, gimp"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    basis: bspline4", "unknown word 'bspline4'; did you mean 'bspline2'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: apik", "unknown word 'apik'; did you mean 'apic'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 0}", "bodies.block.transfer.xpic is 0 but must be at least 1 and at most 20"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {fmpm: -1}", "bodies.block.transfer.fmpm is -1 but must be at least 1 and at most 20"},

@@ -1,0 +1,10 @@
+/* kernel_bspline3.c: the passes over points with cubic B-splines. */
+#define NODES 4
+#define GIMP 0
+#define SPLINE 1
+#define BASIS "bspline3"
+#define COURANT                                                                                                                            \
+    { 1.472, 1.496 }
+#define CARRY carry_bspline3
+#define NAME(f) f##_bspline3
+#include "mpm/kernel.inc"
