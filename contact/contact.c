@@ -225,6 +225,7 @@ static void destroy(ab_interaction *face) {
         if (pair->responder && pair->spec->responder->class_.destroy) pair->spec->responder->class_.destroy(pair->responder);
         contact_points_destroy(&pair->points);
         contact_broad_destroy(pair->broad);
+        contact_faces_destroy(pair->faces);
         free(pair->tiles), free(pair->nodes_a), free(pair->nodes_b);
     }
     free(all->pairs), free(all->totals), free(all->friction), free(all->contact), free(all);

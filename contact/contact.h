@@ -57,7 +57,8 @@ typedef struct contact_pair {
     size_t tile_count, tile_capacity;
     uint32_t *nodes_a, *nodes_b; /* nodes both bodies have mass at */
     size_t node_count, node_capacity;
-    contact_broad *broad; /* NULL unless the finder needs surfaces */
+    contact_broad *broad;        /* NULL unless the finder needs surfaces */
+    struct contact_faces *faces; /* NULL unless the finder needs the nearest faces of nodes */
     contact_points points;
     size_t failures; /* of the finder, so far */
 } contact_pair;
@@ -87,6 +88,10 @@ bool contact_all_held(const contact_side side[2], size_t i, size_t c);
 
 /* shared_nodes.c */
 ab_status contact_shared_nodes(contact_pair *, ab_report *);
+
+/* nearest_face.c: fills what both traces say of faces. The arrays stay the pair's, until the next call. */
+ab_status contact_nearest_faces(contact_pair *, ab_trace *a, ab_trace *b, ab_report *);
+void contact_faces_destroy(struct contact_faces *);
 
 /* broad_phase.c */
 ab_status contact_broad_create(const ab_scene *, contact_pair *, ab_report *);

@@ -7,6 +7,7 @@
 
 enum { NODES_PER_THREAD = 32 };
 
+static const uint32_t SETTING_NEEDS = AB_NEED_DENSITY_GRADIENT | AB_NEED_NEAREST_FACE; /* what a finder may need by its settings */
 static const uint32_t NODE_NEEDS = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS;
 
 ab_status contact_complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
@@ -27,6 +28,8 @@ static bool leaves_out_gap(const ab_contact_spec *spec) {
     return false;
 }
 
+static bool has_mesh(const ab_domain *body) { return ab_domain_is_rigid(body) || body->ops->cells; }
+
 ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
     const ab_loaded_class *finder = pair->spec->finder;
     const ab_domain_ops *a = pair->a->ops, *b = pair->b->ops;
@@ -39,6 +42,18 @@ ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
                 "such as point-to-segment",
                 finder->class_.name, body->spec->name, body->ops->method);
     }
+    const uint32_t more = ab_contact_needs(pair->spec) & ~finder->class_.needs;
+    if (more & ~SETTING_NEEDS)
+        return ab_report_error(
+            report, pair->spec->mark,
+            "contact by '%s' needs 0x%x with these settings, and only 0x%x may hang on them; declare the rest in the class",
+            finder->class_.name, more, SETTING_NEEDS);
+    if ((ab_contact_needs(pair->spec) & AB_NEED_NEAREST_FACE) && !(has_mesh(pair->a) || has_mesh(pair->b)))
+        return ab_report_error(
+            report, pair->spec->mark,
+            "normal: faces takes the normal of a body's faces (finite-elements, rigid), and neither '%s' (%s) nor '%s' (%s) has any; "
+            "use another normal, such as average",
+            pair->a->spec->name, a->method, pair->b->spec->name, b->method);
     if ((finder->class_.needs & AB_NEED_SURFACE) && !((a->faces && b->surface_points) || (b->faces && a->surface_points)))
         return ab_report_error(
             report, pair->spec->mark,
@@ -79,7 +94,7 @@ static void describe(ab_trace *trace, const ab_domain *body, double cell) {
 ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
-    const uint32_t needs = pair->spec->finder->class_.needs;
+    const uint32_t needs = ab_contact_needs(pair->spec);
     ab_trace a = {0}, b = {0};
     ab_surface surface_a = {0}, surface_b = {0};
     p->count = 0;
@@ -87,6 +102,7 @@ ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *repor
     size_t stencil = 0;
     if (needs & NODE_NEEDS) {
         AB_TRY(trace_nodes(pair, needs, &a, &b, report));
+        if ((needs & AB_NEED_NEAREST_FACE) && pair->node_count) AB_TRY(contact_nearest_faces(pair, &a, &b, report));
         if (a.stencil_start)
             stencil = a.stencil_start[a.count] > b.stencil_start[b.count] ? a.stencil_start[a.count] : b.stencil_start[b.count];
     }

@@ -21,7 +21,9 @@ static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradien
                              {AB_NEED_SURFACE, "points and faces of surfaces"},
                              {AB_NEED_DISTANCE, "distance from the stiffer body"},
                              {AB_NEED_GAP, "gap"},
-                             {AB_NEED_FIXED_PLACES, "fixed places"}};
+                             {AB_NEED_FIXED_PLACES, "fixed places"},
+                             {AB_NEED_DENSITY_GRADIENT, "density gradient"},
+                             {AB_NEED_NEAREST_FACE, "nearest face"}};
 static const word gives[] = {{AB_GIVE_STRESS, "stress"},
                              {AB_GIVE_DISSIPATION, "dissipation"},
                              {AB_GIVE_WAVE_SPEED, "wave speed"},

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/density.h"
 #include "core/vector.h"
 
 enum {
@@ -42,8 +43,8 @@ struct fem_trace {
     uint32_t *slot; /* tile*AB_TILE_NODES + cell in it */
     uint32_t *order;
     /* what a finder was last shown */
-    size_t capacity, near_capacity, stencil_capacity, place_capacity;
-    double *position, *node_mass, *mass_gradient, *area_vector, *stencil_weight, *near_position, *near_extent;
+    size_t capacity, near_capacity, stencil_capacity, place_capacity, density_capacity;
+    double *position, *node_mass, *mass_gradient, *area_vector, *stencil_weight, *near_position, *near_extent, *density_gradient;
     size_t *near_start, *stencil_start, *place; /* place: by dof, where it stands in the stencil of the node at hand */
     uint32_t *stencil_dof;
     uint64_t *node_key;
@@ -76,7 +77,8 @@ void fem_trace_destroy(fem_trace *t) {
     free(t->key), free(t->wanted), free(t->tiles), free(t->mass), free(t->patch), free(t->cell_start);
     free(t->cell), free(t->slot), free(t->order);
     free(t->position), free(t->node_mass), free(t->mass_gradient), free(t->area_vector), free(t->stencil_weight), free(t->near_position);
-    free(t->near_extent), free(t->near_start), free(t->stencil_start), free(t->place), free(t->stencil_dof), free(t->node_key), free(t);
+    free(t->near_extent), free(t->near_start), free(t->stencil_start), free(t->place), free(t->stencil_dof), free(t->node_key);
+    free(t->density_gradient), free(t);
 }
 
 /* ---- tiles ---------------------------------------------------------------------------------------------------------------- */
@@ -309,6 +311,30 @@ static void cells_around(const fem_trace *t, uint32_t node, uint32_t first[4], u
     }
 }
 
+/* Slope of the density at a node (core/density.h), from the points in the sixteen cells that reach it: 2 numbers. Of a body whose points are a layer along its outline it is
+ * right where the layer is two cells deep below the node. */
+static void density_gradient(const fem_trace *t, const fem_inner *inner, uint32_t node, const double at[2], double slope[2]) {
+    const uint32_t home = node / AB_TILE_NODES;
+    const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE;
+    const double *x = inner->position, *y = x + inner->ld;
+    slope[0] = slope[1] = 0.0;
+    for (int c = 0; c < 16; ++c) {
+        const int ci = i - 2 + c % 4, cj = j - 2 + c / 4, dx = ci < 0 ? -1 : ci / AB_TILE, dy = cj < 0 ? -1 : cj / AB_TILE;
+        const int32_t k = dx || dy ? t->tiles[home].around[(dy + 1) * 3 + dx + 1] : (int32_t)home;
+        if (k < 0) continue;
+        const uint32_t *start = t->cell_start + (size_t)k * AB_TILE_NODES + (cj - dy * AB_TILE) * AB_TILE + ci - dx * AB_TILE;
+        for (uint32_t s = start[0]; s < start[1]; ++s) {
+            const uint32_t q = t->order[s];
+            double difference[2], mean[2];
+            ab_density_pair((x[q] - at[0]) * t->inverse_h, &difference[0], &mean[0]);
+            ab_density_pair((y[q] - at[1]) * t->inverse_h, &difference[1], &mean[1]);
+            slope[0] += inner->mass[q] * difference[0] * mean[1];
+            slope[1] += inner->mass[q] * mean[0] * difference[1];
+        }
+    }
+    for (int d = 0; d < 2; ++d) slope[d] *= t->inverse_h * t->inverse_h * t->inverse_h;
+}
+
 static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t needs) {
     if (count + 1 > t->capacity) {
         const size_t n = (2 * count + 64) & ~(size_t)7;
@@ -318,6 +344,10 @@ static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t 
             !grow(&t->node_key, n, sizeof(uint64_t)))
             return false;
         t->capacity = n;
+    }
+    if ((needs & AB_NEED_DENSITY_GRADIENT) && t->capacity > t->density_capacity) {
+        if (!grow(&t->density_gradient, 2 * t->capacity, sizeof(double))) return false;
+        t->density_capacity = t->capacity;
     }
     if (!(needs & AB_NEED_NEAR_POINTS)) return true;
     size_t near = 0;
@@ -413,6 +443,11 @@ ab_status fem_trace_nodes(fem_trace *t, const fem_inner *inner, const uint32_t *
         t->stencil_start[k] = stencil;
         t->near_start[k] = near;
         if (!look_around(t, inner, nodes[k], k, needs, &stencil, &near)) goto no_memory;
+        if (needs & AB_NEED_DENSITY_GRADIENT) {
+            double slope[2];
+            density_gradient(t, inner, nodes[k], (const double[2]){t->position[k], t->position[ld + k]}, slope);
+            for (size_t d = 0; d < 2; ++d) t->density_gradient[d * ld + k] = slope[d];
+        }
     }
     t->stencil_start[count] = stencil;
     t->near_start[count] = near;
@@ -436,6 +471,7 @@ ab_status fem_trace_nodes(fem_trace *t, const fem_inner *inner, const uint32_t *
         .near_ld = t->near_capacity,
         .near_position = t->near_position,
         .near_extent = t->near_extent,
+        .density_gradient = (needs & AB_NEED_DENSITY_GRADIENT) ? t->density_gradient : NULL,
     };
     return AB_OK;
 no_memory:

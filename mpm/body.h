@@ -238,6 +238,8 @@ void mpm_loads_follow(mpm_body *, const ab_step *); /* with the velocities that 
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 void mpm_trace_destroy(struct mpm_trace *);
+/* trace_density.c: what one tile's points add to the slopes of the density (2 rows of ld) at the nodes, ascending */
+void mpm_trace_density(const mpm_body *, const mpm_tile *, const uint32_t *nodes, size_t count, double *gradient, size_t ld);
 
 /* surface.c */
 ab_status mpm_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_report *);

@@ -11,8 +11,8 @@ typedef struct near_point {
 } near_point;
 
 struct mpm_trace {
-    size_t capacity, near_capacity, entry_capacity, tile_capacity;
-    double *position, *mass, *mass_gradient, *area_vector;
+    size_t capacity, near_capacity, entry_capacity, tile_capacity, density_capacity;
+    double *position, *mass, *mass_gradient, *area_vector, *density_gradient;
     size_t *near_start, *stencil_start;
     uint32_t *stencil_dof;
     double *stencil_weight;
@@ -28,7 +28,7 @@ void mpm_trace_destroy(struct mpm_trace *t) {
     if (!t) return;
     free(t->position), free(t->mass), free(t->mass_gradient), free(t->area_vector), free(t->near_start), free(t->stencil_start);
     free(t->stencil_dof), free(t->stencil_weight), free(t->key), free(t->near_position), free(t->near_extent), free(t->entries);
-    free(t->stamp), free(t->tile_list), free(t);
+    free(t->stamp), free(t->tile_list), free(t->density_gradient), free(t);
 }
 
 static bool grow(void *pointer, size_t count, size_t size) {
@@ -196,6 +196,13 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
                 goto no_memory;
         }
     }
+    if (needs & AB_NEED_DENSITY_GRADIENT) {
+        if (ld > t->density_capacity && !grow(&t->density_gradient, 2 * ld, sizeof(double))) goto no_memory;
+        t->density_capacity = ld;
+        memset(t->density_gradient, 0, 2 * ld * sizeof(double));
+        const size_t tiles = candidate_tiles(body, nodes, count);
+        for (size_t k = 0; k < tiles; ++k) mpm_trace_density(body, body->tiles + t->tile_list[k], nodes, count, t->density_gradient, ld);
+    }
     if (needs & AB_NEED_NEAR_POINTS) { /* counting sort by node keeps the order of tiles and points */
         if (entries > t->near_capacity) {
             const size_t n = 2 * entries + 64;
@@ -234,6 +241,7 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         .near_ld = t->near_capacity,
         .near_position = t->near_position,
         .near_extent = t->near_extent,
+        .density_gradient = (needs & AB_NEED_DENSITY_GRADIENT) ? t->density_gradient : NULL,
     };
     return AB_OK;
 no_memory:

@@ -1,4 +1,4 @@
-/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.1.
+/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.2.
  *
  * One source file makes one shared object. The object exports one symbol, and it is data:
  *
@@ -39,7 +39,8 @@ extern "C" {
 #endif
 
 #define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
-#define AB_ABI_MINOR 1u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs */
+#define AB_ABI_MINOR 2u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
+                            2: density gradients, nearest faces, needs that hang on settings */
 
 #if defined(__GNUC__)
 #define AB_EXPORT __attribute__((visibility("default")))
@@ -126,7 +127,10 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     AB_NEED_SURFACE = 256u, /* trace->surface: points of one body and the faces of the other near them (since 1.1) */
     AB_NEED_DISTANCE = 512u, /* responses: points->distance (since 1.1) */
     AB_NEED_GAP = 1024u,     /* responses: a points->gap that is known: not that of a finder with the setting gap: none (since 1.1) */
-    AB_NEED_FIXED_PLACES = 2048u /* responses: contact points that stay where they are on the bodies: points->fixed_places (since 1.1) */
+    AB_NEED_FIXED_PLACES = 2048u, /* responses: contact points that stay where they are on the bodies: points->fixed_places (since 1.1) */
+    /* contact finders, since 1.2; these two alone may be asked for by needs_with */
+    AB_NEED_DENSITY_GRADIENT = 4096u, /* trace->density_gradient */
+    AB_NEED_NEAREST_FACE = 8192u      /* trace->face_normal, face_distance, face_turn: of bodies that have faces (finite elements, rigid) */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,
@@ -234,6 +238,13 @@ typedef struct ab_trace {
     const double *near_position; /* m from the grid's corner; dimension rows */
     const double *near_extent;   /* m2; symmetric: (xx, yy, xy) or (xx, yy, zz, xy, yz, zx) */
     const ab_surface *surface;   /* NULL unless needed; since 1.1. With it alone count is 0: no node is looked for */
+    /* since 1.2; dimension rows and single ones of ld; NULL unless needed */
+    const double *density_gradient; /* kg/m4: slope of the plane that fits best (least squares) the densities at the centres of the cells that meet
+                                       at the node, each sum_p m_p B(x_c - x_p) with B the quadratic B-spline of the cell's size; points into the body */
+    const double *face_normal;      /* of the body's face nearest to the node: unit, out of the body; where that is a vertex, from it to the node (from the
+                                       node to it inside the body). 0 where no face is within two cells; NULL for a body without faces */
+    const double *face_distance;    /* m, from that place to the node; negative inside the body; INFINITY where there is no face */
+    const double *face_turn;        /* rad: where that place is a vertex, by how much the outline turns there; else 0 */
 } ab_trace;
 
 /* Contact points (side a, side b): v_rel = sum w_a v_a - sum w_b v_b; the normal goes out of a into b; approaching when v_rel.n > 0.
@@ -294,6 +305,7 @@ typedef struct ab_class {
     int (*create)(const ab_host *host, const ab_value *settings, void **self); /* settings in the order of param */
     void (*destroy)(void *self); /* both NULL in a class without settings that keeps nothing: self is then NULL */
     const void *ops; /* ab_material_ops, ab_boundary_ops or ab_contact_ops */
+    uint32_t (*needs_with)(const ab_value *settings); /* optional, finders, since 1.2: what it needs beyond `needs` with these settings; pure, called often */
 } ab_class;
 
 typedef struct ab_plugin {

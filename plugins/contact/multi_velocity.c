@@ -6,28 +6,43 @@
 #include <string.h>
 
 #include "closest_approach.h"
+#include "node_normals.h"
 
 static const double CORNER = 0.866; /* cosine between two normals that lean by more than a face does */
 
-enum { NORMAL_AVERAGE, NORMAL_MASS_GRADIENT, NORMAL_VOLUME_GRADIENT, NORMAL_STIFFER };
+enum {
+    NORMAL_AVERAGE,
+    NORMAL_MASS_GRADIENT,
+    NORMAL_VOLUME_GRADIENT,
+    NORMAL_STIFFER,
+    NORMAL_DENSITY_GRADIENT,
+    NORMAL_GEOMETRIC,
+    NORMAL_REGRESSION,
+    NORMAL_CONVEX,
+    NORMAL_FACES
+};
+enum { GAP_DISTANCE, GAP_NONE, GAP_REGRESSION };
 
 typedef struct multi_velocity {
     const ab_host *host;
     int64_t normal; /* -1: fixed direction */
     double direction[3];
-    int gap;              /* 0: distance, 1: none */
+    int gap;              /* GAP_* */
     double corner_cosine; /* of the angle beyond which the corner rule looks at two normals */
 } multi_velocity;
 
 static const ab_param PARAMS[] = {
     {"normal", "1",
-     "normal of a shared node: average of both bodies' (with the corner rule), from the gradient of mass or of volume, the stiffer body's, "
+     "normal of a shared node: average of both bodies' (with the corner rule), from the gradient of mass, of volume or of density, the "
+     "stiffer body's, from the cells "
+     "that hold points, the plane that separates the points, the flat or convex body's against a concave one, the nearest face's, "
      "or a direction out of the first body",
-     "average|mass-gradient|volume-gradient|stiffer", AB_CHOICE, AB_OR_DIRECTION, NORMAL_AVERAGE, 0, 0},
+     "average|mass-gradient|volume-gradient|stiffer|density-gradient|geometric|regression|convex|faces", AB_CHOICE, AB_OR_DIRECTION,
+     NORMAL_AVERAGE, 0, 0},
     {"gap", "1",
      "distance: contact acts when the material of the bodies meets; none: as soon as they share a node (velocities only, the classical "
-     "form: early and lossy)",
-     "distance|none", AB_CHOICE, 0, 0, 0, 0},
+     "form: early and lossy); regression: as distance, between the points' sides along the normal of the plane that separates them",
+     "distance|none|regression", AB_CHOICE, 0, 0, 0, 0},
     {"corner_angle", "rad",
      "corner rule of `average`: where the two bodies' normals disagree by more than this, the direction of closest approach of their "
      "material is taken",
@@ -94,6 +109,22 @@ static double reach(const ab_trace *t, size_t i, const double n[3], double sign)
 /* Distance of the two bodies' material along n at shared node i, m; negative: they overlap. */
 static double distance(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
     return -reach(a, i, n, 1.0) - reach(b, i, n, -1.0);
+}
+
+/* The same between all points near the node: how far a plane with normal n keeps them apart. */
+static double separated(const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
+    double gap = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        const ab_trace *t = side ? b : a;
+        double far = -INFINITY;
+        for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+            double along = 0.0;
+            for (uint32_t c = 0; c < t->dimension; ++c) along += (t->near_position[c * t->near_ld + k] - t->position[c * t->ld + i]) * n[c];
+            far = larger(far, (side ? -along : along) + half_size(t, k, n));
+        }
+        gap -= far;
+    }
+    return gap;
 }
 
 /* From node i to the nearest material of a body: the least distance to the domains of the points near it, each taken as a box that lies along n. */
@@ -211,9 +242,49 @@ static void average_normal(const multi_velocity *mv, const ab_trace *a, const ab
     if (d == 2) closest_approach(a, b, i, guess, cosine < CORNER, n);
 }
 
+/* The normal that the setting names, out of a, where it is not `average`; false where it has no answer. na, nb: unit, out of each. */
+static int named_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double na[3], const double nb[3],
+                        double n[3]) {
+    const uint32_t d = a->dimension;
+    double guess[3] = {0};
+    n[0] = n[1] = n[2] = 0.0;
+    switch (mv->normal) {
+    case NORMAL_MASS_GRADIENT:
+        for (uint32_t c = 0; c < d; ++c) n[c] = a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i];
+        break;
+    case NORMAL_VOLUME_GRADIENT:
+        for (uint32_t c = 0; c < d; ++c) n[c] = a->area_vector[c * a->ld + i] - b->area_vector[c * b->ld + i];
+        break;
+    case NORMAL_STIFFER:
+        for (uint32_t c = 0; c < d; ++c) n[c] = a->stiffness >= b->stiffness ? na[c] : -nb[c];
+        break;
+    case NORMAL_DENSITY_GRADIENT: return density_normal(a, b, i, n);
+    case NORMAL_GEOMETRIC: return geometric_normal(a, b, i, n);
+    case NORMAL_REGRESSION:
+        for (uint32_t c = 0; c < d; ++c) guess[c] = na[c] - nb[c];
+        unit(guess, d);
+        return regression_normal(a, b, i, guess, n);
+    case NORMAL_CONVEX:
+        average_normal(mv, a, b, i, na, nb, guess);
+        return unit(guess, d) > 0.0 && convex_normal(a, b, i, guess, na, nb, CORNER, n);
+    case NORMAL_FACES: /* beside a corner a node may be nearest to the side that does not touch */
+        if (!face_normal(a, b, i, n)) return 0;
+        average_normal(mv, a, b, i, na, nb, guess);
+        unit(guess, d);
+        return normals_dot(n, guess, d) >= CORNER;
+    default: memcpy(n, mv->direction, sizeof mv->direction);
+    }
+    return unit(n, d) > 0.0;
+}
+
 /* Distance of the two bodies' material at shared node i, m. A normal from one gradient alone may lean where a body ends; the distance along it would then be
  * that of nothing. So it is measured along the best direction known, and only a direction given by hand is taken at its word. */
 static double node_gap(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, const double n[3]) {
+    if (mv->gap == GAP_REGRESSION) {
+        double plane[3];
+        if (mv->normal == NORMAL_REGRESSION) return separated(a, b, i, n);
+        return separated(a, b, i, regression_normal(a, b, i, n, plane) ? plane : n);
+    }
     if (mv->normal < 0 || mv->normal == NORMAL_AVERAGE) return distance(a, b, i, n);
     double na[3] = {0}, nb[3] = {0}, along[3] = {0};
     for (uint32_t c = 0; c < a->dimension; ++c) {
@@ -241,17 +312,10 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     for (uint32_t c = 1; c < d; ++c) face *= a->cell;
     if (!(smaller(la, lb) > LEAST_AREA * face)) return 0; /* one of them has no face here, whatever the normal is */
     n[0] = n[1] = n[2] = 0.0;
-    if (mv->normal < 0)
-        memcpy(n, mv->direction, sizeof mv->direction);
-    else if (mv->normal == NORMAL_AVERAGE)
+    if (mv->normal == NORMAL_AVERAGE || !named_normal(mv, a, b, i, na, nb, n)) {
         average_normal(mv, a, b, i, na, nb, n);
-    else
-        for (uint32_t c = 0; c < d; ++c)
-            n[c] = mv->normal == NORMAL_MASS_GRADIENT     ? a->mass_gradient[c * a->ld + i] - b->mass_gradient[c * b->ld + i]
-                   : mv->normal == NORMAL_VOLUME_GRADIENT ? va[c] - vb[c]
-                   : a->stiffness >= b->stiffness         ? na[c]
-                                                          : -nb[c];
-    if (!(unit(n, d) > 0.0)) return 0;
+        if (!(unit(n, d) > 0.0)) return 0;
+    }
     double along_a = 0.0, along_b = 0.0;
     for (uint32_t c = 0; c < d; ++c) {
         along_a += va[c] * n[c];
@@ -277,7 +341,7 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
     for (size_t i = 0; i < a->count; ++i) {
         double normal[3], area = 0.0, gap = 0.0;
         if (!node_normal(mv, a, b, i, normal, &area)) continue;
-        if (mv->gap == 0) gap = node_gap(mv, a, b, i, normal);
+        if (mv->gap != GAP_NONE) gap = node_gap(mv, a, b, i, normal);
         size_t sa = out->a_start[n], sb = out->b_start[n];
         for (size_t s = a->stencil_start[i]; s < a->stencil_start[i + 1]; ++s, ++sa) {
             out->a_dof[sa] = a->stencil_dof[s];
@@ -305,6 +369,12 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
     return 0;
 }
 
+static uint32_t needs_with(const ab_value *settings) {
+    return settings[0].integer == NORMAL_DENSITY_GRADIENT ? AB_NEED_DENSITY_GRADIENT
+           : settings[0].integer == NORMAL_FACES          ? AB_NEED_NEAREST_FACE
+                                                          : 0u;
+}
+
 static const ab_contact_ops OPS = {sizeof OPS, find, NULL};
 static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
@@ -320,6 +390,7 @@ static const ab_class CLASS = {
     .create = create,
     .destroy = destroy,
     .ops = &OPS,
+    .needs_with = needs_with,
 };
 static const ab_class *const CLASSES[] = {&CLASS};
 const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "multi-velocity", "1.0", "MIT", CLASSES};
