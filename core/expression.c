@@ -15,7 +15,7 @@
 
 struct ab_expression {
     muParserHandle_t parser;
-    double variable[4]; /* t, x, y, z */
+    double variable[6]; /* t, x, y, z, X, Y */
     unsigned used;      /* of them: enum ab_variables */
 };
 
@@ -36,7 +36,7 @@ struct ab_formulas {
 static const char *const functions[] = {"sin",   "cos",   "tan",   "asin",  "acos", "atan",  "sinh", "cosh", "tanh",
                                         "asinh", "acosh", "atanh", "atan2", "log2", "log10", "log",  "ln",   "exp",
                                         "sqrt",  "sign",  "rint",  "abs",   "sum",  "avg",   "min",  "max"};
-static const char *const variables_all[] = {"t", "x", "y", "z"};
+static const char *const variables_all[] = {"t", "x", "y", "z", "X", "Y"}; /* bit k of enum ab_variables */
 static const char *const words[] = {"true", "false", "yes", "no", "on", "off", "null", "inf", "nan", "infinity", "_pi", "_e"};
 
 enum { WORK_EACH = 40, WORK_MISTAKE = 5000 }; /* what a formula and a mistake cost besides their characters */
@@ -118,7 +118,7 @@ ab_status ab_formulas_define(ab_formulas *formulas, const char *name, double val
 /* Names that a text may use here, for suggestions. */
 static size_t known_names(const ab_formulas *formulas, unsigned variables, const char **names) {
     size_t count = 0;
-    for (size_t i = 0; i < 3; i++)
+    for (size_t i = 0; i < COUNT(variables_all); i++)
         if (variables & (1u << i)) names[count++] = variables_all[i];
     for (size_t i = formulas->constant_count; i > 0; i--) names[count++] = formulas->constants[i - 1].name;
     for (size_t i = 0; i < COUNT(functions); i++) names[count++] = functions[i];
@@ -128,6 +128,8 @@ static size_t known_names(const ab_formulas *formulas, unsigned variables, const
 static const char *here(unsigned variables) {
     if (variables == AB_VARIABLE_T) return "only t (time, s) and constants are known here";
     if (variables == AB_VARIABLES_XY) return "only x, y (m) and constants are known here";
+    if (variables == AB_VARIABLES_T_START) return "only t, X, Y (m, the place at the start) and constants are known here";
+    if (variables == AB_VARIABLES_MOTION) return "only t, x, y (m, now), X, Y (m, at the start) and constants are known here";
     return variables == AB_NO_VARIABLE ? "only constants are known here" : "only t, x, y and constants are known here";
 }
 
@@ -143,7 +145,7 @@ static ab_status explain(ab_formulas *formulas, unsigned variables, char *why, s
     const size_t letters = strspn(token, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
     if (letters > 0 && token[letters] == '\0' && !isdigit((unsigned char)token[0]) && !among(token, functions, COUNT(functions)) &&
         strstr(text, "nexpected token") != NULL) {
-        const char *names[AB_FORMULA_CONSTANTS + COUNT(functions) + 4];
+        const char *names[AB_FORMULA_CONSTANTS + COUNT(functions) + COUNT(variables_all)];
         const size_t count = known_names(formulas, variables, names);
         const char *nearest = ab_suggest(token, names, count);
         if (nearest != NULL && strcmp(nearest, token) != 0)
@@ -210,7 +212,7 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
     }
     muParserHandle_t bench = formulas->bench.parser;
     (void)mupError(bench); /* forget an older mistake */
-    for (size_t i = 0; i < 4; i++) formulas->bench.variable[i] = 0;
+    for (size_t i = 0; i < COUNT(variables_all); i++) formulas->bench.variable[i] = 0;
     mupSetExpr(bench, text);
     if (mupError(bench)) return explain(formulas, variables, why, why_size);
     int results = 0;
@@ -228,7 +230,7 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
         const char *name = NULL;
         double *address = NULL;
         mupGetExprVar(bench, (unsigned)i, &name, &address);
-        for (size_t k = 0; k < 4 && name != NULL; k++)
+        for (size_t k = 0; k < COUNT(variables_all) && name != NULL; k++)
             if (strcmp(name, variables_all[k]) == 0) found |= 1u << k;
     }
     if (found & ~variables) {
@@ -248,6 +250,11 @@ ab_status ab_formulas_compile(ab_formulas *formulas, const char *text, unsigned 
 
 unsigned ab_number_variables(const ab_number *number) { return number->expression == NULL ? AB_NO_VARIABLE : number->expression->used; }
 
+static double evaluate(const ab_number *number) {
+    const double value = mupEval(number->expression->parser);
+    return mupError(number->expression->parser) ? NAN : number->value * value;
+}
+
 double ab_number_at(const ab_number *number, double t, double x, double y, double z) {
     if (number->expression == NULL) return number->value;
     ab_expression *expression = number->expression;
@@ -255,8 +262,15 @@ double ab_number_at(const ab_number *number, double t, double x, double y, doubl
     expression->variable[1] = x;
     expression->variable[2] = y;
     expression->variable[3] = z;
-    const double value = mupEval(expression->parser);
-    return mupError(expression->parser) ? NAN : number->value * value;
+    return evaluate(number);
+}
+
+double ab_number_of(const ab_number *number, double t, const double now[2], const double start[2]) {
+    if (number->expression == NULL) return number->value;
+    double *variable = number->expression->variable;
+    variable[0] = t;
+    for (int c = 0; c < 2; ++c) variable[1 + c] = now[c], variable[4 + c] = start[c];
+    return evaluate(number);
 }
 
 ab_status ab_number_finite(const ab_number *number, double value, double t, const double place[2], ab_report *report, const char *name,

@@ -16,6 +16,8 @@ typedef struct ab_number {
 /* Value at time t (s) and place x, y, z (m). A formula that does not know a variable ignores it. NaN is possible: callers that cannot
  * live with it check. */
 double ab_number_at(const ab_number *number, double t, double x, double y, double z);
+/* The same for what has moved: now at x, y, at the start at X, Y (m, as drawn). */
+double ab_number_of(const ab_number *number, double t, const double now[2], const double start[2]);
 /* A value just found that is no finite number stops the run, with the name of the formula (printf), the time, the place (m, as drawn; NULL: none)
  * and the value. At t = 0, before the first step, it is a mistake in the scene: AB_BAD_INPUT at its mark; later AB_FAILED. */
 ab_status ab_number_finite(const ab_number *number, double value, double t, const double place[2], ab_report *report, const char *name, ...)
@@ -29,7 +31,10 @@ enum ab_variables {
     AB_VARIABLE_X = 2,
     AB_VARIABLE_Y = 4,
     AB_VARIABLES_XY = 6,
-    AB_VARIABLES_TXY = 7
+    AB_VARIABLES_TXY = 7,
+    AB_VARIABLES_START = 48,   /* X, Y: the place at the start */
+    AB_VARIABLES_T_START = 49, /* of what is followed from its start */
+    AB_VARIABLES_MOTION = 55   /* t, x, y, X, Y */
 };
 /* Those that this one uses. */
 unsigned ab_number_variables(const ab_number *number);

@@ -135,6 +135,13 @@ static size_t place_before(const body_points *points, const double *id, size_t p
     return low;
 }
 
+/* The value of a point less the formula where it stood at the start. */
+static ab_status take_away(const monitor *m, const ab_state_view *view, const double start[2], double *value, ab_report *report) {
+    const double minus = ab_number_of(&m->spec->minus, view->time, start, start);
+    *value -= minus;
+    return ab_number_finite(&m->spec->minus, minus, view->time, start, report, "minus of monitor '%s'", m->spec->name);
+}
+
 static ab_status points_value(ab_monitors *monitors, monitor *m, const ab_state_view *view, ab_report *report) {
     const size_t body = (size_t)m->spec->body;
     const body_points *points = &monitors->of_body[body];
@@ -144,7 +151,8 @@ static ab_status points_value(ab_monitors *monitors, monitor *m, const ab_state_
     const size_t width = (size_t)field->components;
     const double *values, *weight = NULL, *id = NULL;
     AB_TRY(read_field(monitors, body, view, m->field, field->components, &values, report));
-    if (m->gather == MEAN_BY_MASS) AB_TRY(read_field(monitors, body, view, "mass", 1, &weight, report));
+    const bool squared = m->gather == MEAN_SQUARE;
+    if (m->gather == MEAN_BY_MASS || squared) AB_TRY(read_field(monitors, body, view, "mass", 1, &weight, report));
     if (m->gather == MEAN_BY_VOLUME) AB_TRY(read_field(monitors, body, view, "volume", 1, &weight, report));
     if (points->position != NULL && count != points->count) AB_TRY(read_field(monitors, body, view, "id", 1, &id, report));
     const bool chosen = m->selected != NULL;
@@ -155,8 +163,10 @@ static ab_status points_value(ab_monitors *monitors, monitor *m, const ab_state_
         const size_t p = chosen ? place_now(points, m->selected[k], count, id) : k;
         if (p == SIZE_MAX) continue;
         const size_t start = chosen ? m->selected[k] : id != NULL ? place_before(points, id, k) : k;
-        const double q = point_value(m, points, values + p * width, start, monitors->dimension), w = weight != NULL ? weight[p] : 1;
-        sum += w * q;
+        double q = point_value(m, points, values + p * width, start, monitors->dimension);
+        if (m->spec->has_minus) AB_TRY(take_away(m, view, points->position + start * (size_t)monitors->dimension, &q, report));
+        const double w = weight != NULL ? weight[p] : 1;
+        sum += w * (squared ? q * q : q);
         sum_weight += w;
         largest = q > largest || isnan(q) ? q : largest;
         smallest = q < smallest || isnan(q) ? q : smallest;
@@ -166,6 +176,7 @@ static ab_status points_value(ab_monitors *monitors, monitor *m, const ab_state_
                : m->gather == LARGEST  ? largest
                : m->gather == SMALLEST ? smallest
                : m->gather == SUM      ? sum
+               : squared               ? sqrt(sum / sum_weight)
                                        : sum / sum_weight;
     return AB_OK;
 }

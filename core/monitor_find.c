@@ -143,6 +143,7 @@ static bool find_points(monitor *m, const ab_domain *domain, const char *base, c
                 : strcmp(over, "volume") == 0 ? MEAN_BY_VOLUME
                 : strcmp(over, "max") == 0    ? LARGEST
                 : strcmp(over, "min") == 0    ? SMALLEST
+                : strcmp(over, "rms") == 0    ? MEAN_SQUARE
                                               : SUM;
     return true;
 }
@@ -195,7 +196,7 @@ static bool find_value(monitor *m, const ab_state_view *view) {
     }
     const ab_domain *domain = view->domains[spec->body];
     if (axis >= domain->dimension) return false;
-    const bool whole = !spec->has_at && !spec->has_where && (spec->over == NULL || strcmp(spec->over, "mass") == 0);
+    const bool whole = !spec->has_at && !spec->has_where && !spec->has_minus && (spec->over == NULL || strcmp(spec->over, "mass") == 0);
     const bool is_mass = strcmp(base, "mass") == 0; /* of a point, or its mean, where that is asked for */
     if (whole && !(is_mass && spec->over != NULL) && find_motion(m, base, axis, false)) return true;
     if (strcmp(base, "force") == 0 || strcmp(spec->value, "moment") == 0 || strcmp(base, "reaction") == 0)
@@ -285,7 +286,7 @@ static ab_status find(ab_monitors *monitors, monitor *m, const ab_state_view *vi
     if (m->selected != NULL) return AB_OK; /* found already */
     if (m->source != OF_POINTS) return AB_OK;
     const bool all = !spec->has_at && (!spec->has_where || spec->where.all);
-    if (all && m->quantity != THE_DISPLACEMENT) return AB_OK;
+    if (all && m->quantity != THE_DISPLACEMENT && !spec->has_minus) return AB_OK;
     body_points *points = &monitors->of_body[spec->body];
     AB_TRY(keep_start(monitors, (size_t)spec->body, view, report));
     if (all) return AB_OK;

@@ -94,6 +94,8 @@ typedef struct ab_body_spec {
     char *update;          /* "usf" | "usl" | "musl" */
     ab_number velocity[2]; /* formulas of x, y */
     bool gravity;
+    bool has_force;
+    ab_number force[2]; /* m/s2, formulas of t, x, y now and X, Y at the start */
     ab_mark mark_fill;
     ab_mesh_spec mesh; /* finite-elements; rigid may have one instead of a shape */
     ab_fix_spec *fix;
@@ -135,7 +137,9 @@ typedef struct ab_monitor_spec {
     double at[2]; /* value at the point nearest to this place of the initial body */
     char *
         value; /* "position.x", "velocity.y", "displacement.x", "stress.xx", "force.y", "energy.kinetic", "momentum.x", "angular-momentum", ... */
-    char *over; /* "mass" | "volume" | "max" | "min" | "sum" or NULL */
+    char *over; /* "mass" | "volume" | "max" | "min" | "sum" | "rms" or NULL */
+    bool has_minus;
+    ab_number minus; /* formula of t and of a point's place X, Y at the start, taken from its value */
     ab_where where;
     bool has_where;
 } ab_monitor_spec;

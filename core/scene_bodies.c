@@ -97,6 +97,7 @@ static const unsigned belongs[BODY_KEYS] = {
     [BODY_UPDATE] = POINTS,
     [BODY_VELOCITY] = POINTS | ELEMENTS | RIGID,
     [BODY_GRAVITY] = POINTS | ELEMENTS | RIGID,
+    [BODY_FORCE] = POINTS | ELEMENTS,
     [BODY_MESH] = ELEMENTS | RIGID,
     [BODY_FIX] = ELEMENTS,
     [BODY_MOTION] = RIGID,
@@ -177,6 +178,7 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
         missing(r, mark, where, "material", body->method, "the name of one of the materials");
     ab_read_vector(&r->base, &key[BODY_VELOCITY], v[BODY_VELOCITY], where, body->velocity);
     ab_read_flag(&r->base, &key[BODY_GRAVITY], v[BODY_GRAVITY], where, &body->gravity);
+    body->has_force = v[BODY_FORCE] != NULL && ab_read_vector(&r->base, &key[BODY_FORCE], v[BODY_FORCE], where, body->force);
     if (method != 0) take_outline(r, v, where, method, mark, body);
     if (method == POINTS) take_points(r, v, where, body);
     if (v[BODY_FIX] != NULL) ab_scene_take_fix(r, v[BODY_FIX], ab_where_join(path, where, "fix"), body);

@@ -107,6 +107,10 @@ static const ab_key body[] = {
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
+    [BODY_FORCE] =
+        {"body_force", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLES_MOTION,
+         .help = "force per mass, besides gravity, as a field: x, y: where a point (or node) is now, X, Y: where it was at the start; "
+                 "material-points, finite-elements"},
     [BODY_MESH] = {"mesh", AB_KEY_SECTION, .help = "elements at the start; finite-elements, and rigid in place of a shape"},
     [BODY_FIX] = {"fix", AB_KEY_SECTION, .help = "list of parts whose velocity is given; finite-elements"},
     [BODY_MOTION] = {"motion", AB_KEY_SECTION, .help = "what of its motion is given; rigid. Without it the body is free"},
@@ -115,7 +119,7 @@ SECTION(
     body, "bodies.NAME", body, NULL,
     "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer` and "
     "`update` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and `motion` to rigid; the others "
-    "to all.",
+    "to all, `body_force` to all but rigid.",
     "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
     "0]\n");
 
@@ -287,12 +291,17 @@ static const ab_key monitor[] = {
     [MONITOR_CONTACT] = {"contact", AB_KEY_INTEGER, .unit = "1", .help = "of a contact: its place in the list, from 0"},
     [MONITOR_VALUE] = {"value", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "what is followed; the lists stand below"},
     [MONITOR_AT] = {"at", AB_KEY_POINT, .unit = "m", .help = "of the one point that is nearest to this place at the start"},
-    [MONITOR_OVER] = {"over", AB_KEY_WORD, .words = "mass|volume|max|min|sum",
+    [MONITOR_OVER] = {"over", AB_KEY_WORD, .words = "mass|volume|max|min|sum|rms",
                       .help = "how the body's points become one number; default mass"},
     [MONITOR_WHERE] = {"where", AB_KEY_SECTION, .help = "of the points that stood here at the start"},
+    [MONITOR_MINUS] =
+        {"minus", AB_KEY_FORMULA, .variables = AB_VARIABLES_T_START,
+         .help = "taken from the value at every point before they become one number, in the unit of the value; X, Y: the place of "
+                 "the point at the start. With over: rms the error against an exact field"},
 };
 SECTION(monitor, "monitors[i]", monitor, NULL, "A list.",
-        "monitors:\n  - {name: block_x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}\n");
+        "monitors:\n  - {name: block_x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}\n"
+        "  - {name: error, body: block, value: displacement.x, minus: \"1e-3*X*t\", over: rms}\n");
 
 static const ab_key history[] = {
     [HISTORY_EVERY] = {"every", AB_KEY_INTEGER, .unit = "1", .initial = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 1e9,

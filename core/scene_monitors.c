@@ -116,8 +116,8 @@ static void take_places(ab_scene_reader *r, const ab_node *const *v, const char 
     const ab_scene *scene = r->scene;
     const bool of_points = monitor->body >= 0 && monitor->value != NULL &&
                            (ab_value_is_of_points(monitor->value) || is_state(scene, (size_t)monitor->body, monitor->value));
-    static const int place_keys[] = {MONITOR_AT, MONITOR_OVER, MONITOR_WHERE};
-    for (int i = 0; i < 3; i++) {
+    static const int place_keys[] = {MONITOR_AT, MONITOR_OVER, MONITOR_WHERE, MONITOR_MINUS};
+    for (int i = 0; i < 4; i++) {
         const ab_node *node = v[place_keys[i]];
         if (node != NULL && !of_points)
             ab_report_error(r->base.report, node->mark,
@@ -125,6 +125,11 @@ static void take_places(ab_scene_reader *r, const ab_node *const *v, const char 
                             ab_section_monitor.keys[place_keys[i]].name, monitor->value == NULL ? "" : monitor->value);
     }
     if (!of_points) return;
+    if (v[MONITOR_MINUS] != NULL) {
+        ab_key key = ab_section_monitor.keys[MONITOR_MINUS];
+        key.unit = value_unit(scene, monitor);
+        monitor->has_minus = ab_read_formula(&r->base, &key, v[MONITOR_MINUS], where, &monitor->minus);
+    }
     if (v[MONITOR_AT] != NULL) {
         for (int i = 1; i < 3; i++)
             if (v[place_keys[i]] != NULL)

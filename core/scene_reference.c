@@ -14,12 +14,16 @@ static const char *type_name(const ab_key *key) {
     case AB_KEY_NAME: return "name";
     case AB_KEY_TEXT: return "text";
     case AB_KEY_POINT: return "[x, y]";
-    case AB_KEY_FORMULA: return key->variables == AB_VARIABLES_TXY ? "formula of t, x, y" : "formula of t";
+    case AB_KEY_FORMULA:
+        return key->variables == AB_VARIABLES_TXY       ? "formula of t, x, y"
+               : key->variables == AB_VARIABLES_T_START ? "formula of t, X, Y"
+                                                        : "formula of t";
     case AB_KEY_VECTOR:
-        return key->variables == AB_VARIABLE_T      ? "[x, y], formulas of t"
-               : key->variables == AB_VARIABLES_XY  ? "[x, y], formulas of x, y"
-               : key->variables == AB_VARIABLES_TXY ? "[x, y], formulas of t, x, y"
-                                                    : "[x, y]";
+        return key->variables == AB_VARIABLE_T         ? "[x, y], formulas of t"
+               : key->variables == AB_VARIABLES_XY     ? "[x, y], formulas of x, y"
+               : key->variables == AB_VARIABLES_TXY    ? "[x, y], formulas of t, x, y"
+               : key->variables == AB_VARIABLES_MOTION ? "[x, y], formulas of t, x, y, X, Y"
+                                                       : "[x, y]";
     default: return "mapping or list";
     }
 }
@@ -122,7 +126,8 @@ static const char opening[] =
     "acos atan sinh cosh tanh asinh acosh atanh\n"
     "  atan2 log2 log10 log (natural) ln exp sqrt sign rint abs sum avg min max. `^` is the power; comparison, `&&`, `||` and `c ? a : b` "
     "as in C. An angle in an expression is in radians.\n"
-    "- A formula may use `t` (s), or `x` and `y` (m), where the tables say so. A unit may follow an expression or a formula: `\"2*p "
+    "- A formula may use `t` (s), or `x` and `y` (m), or `X` and `Y` (m, the place at the start), where the tables say so. A unit may "
+    "follow an expression or a formula: `\"2*p "
     "MPa\"`.\n"
     "- `constants` may use those written above them. Their names must not be those of variables or functions.\n"
     "- Anchors and aliases of YAML work; merge keys (`<<`) and tags do not. A file has at most 16 MiB, 64 levels and 500000 values with "

@@ -80,6 +80,7 @@ static const ab_word over[] = {
     {"max", "1", "largest of all points"},
     {"min", "1", "least of all points"},
     {"sum", "1", "sum over all points"},
+    {"rms", "1", "root of the mean square weighted with mass"},
 };
 
 static const ab_word norms[] = {

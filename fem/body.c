@@ -65,6 +65,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
     fem_nodes_force(body);
     AB_TRY(fem_loads_add(body, step, report));
+    AB_TRY(fem_body_force_add(body, step, report));
     return body->trace ? fem_inner_follow(body, step->number, report) : AB_OK;
 }
 
@@ -85,6 +86,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     fem_held_work(body, step);
     fem_nodes_finish(body, step);
     fem_loads_work(body, step);
+    fem_body_force_work(body, step);
     if (!isfinite(body->energy.kinetic))
         return ab_report_failure(report,
                                  "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown "
@@ -250,6 +252,7 @@ static ab_status take_arrays(fem_body *body, ab_report *report) {
         {&body->sums, body->groups, sizeof *body->sums},
         {&body->node_sums, body->runs, sizeof *body->node_sums},
         {&body->given, 2 * body->domain.spec->fix_count, sizeof(double)},
+        {&body->body_force, body->domain.spec->has_force ? pairs : 0, sizeof(double)},
     };
     for (size_t k = 0; k < sizeof wanted / sizeof *wanted; ++k) {
         void *array = fem_take(body, wanted[k].count, wanted[k].size);

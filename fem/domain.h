@@ -124,7 +124,8 @@ typedef struct fem_body {
     size_t load_count, load_capacity;
     fem_held *held;
     size_t held_count;
-    double *given; /* m/s: two per entry of fix, in this step */
+    double *given;      /* m/s: two per entry of fix, in this step */
+    double *body_force; /* N: pairs, in this step; NULL without one */
 
     ab_energy energy; /* totals so far */
     double ahead;     /* J: what energy.strain has from the second half of the step */
@@ -193,8 +194,11 @@ ab_status fem_loads_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_held_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_loads_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
 void fem_loads_work(fem_body *, const ab_step *);                  /* energy.external */
-ab_status fem_held_move(fem_body *, double time, ab_report *);     /* their velocities at a time, to velocity */
-void fem_held_work(fem_body *, const ab_step *);                   /* force and work of the supports */
+/* body_force.c: all of it nothing where the body has none */
+ab_status fem_body_force_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
+void fem_body_force_work(fem_body *, const ab_step *);                  /* energy.external */
+ab_status fem_held_move(fem_body *, double time, ab_report *);          /* their velocities at a time, to velocity */
+void fem_held_work(fem_body *, const ab_step *);                        /* force and work of the supports */
 
 /* fields.c */
 ab_status fem_fields_create(fem_body *, ab_report *);

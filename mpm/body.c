@@ -33,6 +33,7 @@ static void destroy(ab_domain *domain) {
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
     mpm_outline_destroy(body->outline);
+    mpm_body_force_destroy(body);
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
 
@@ -58,7 +59,11 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     }
     if (!body->scattered) scatter_all(body);
     body->scattered = false;
-    if (body->update != MPM_USF) mpm_loads_scatter(body, step);
+    AB_TRY(mpm_body_force_find(body, step, report));
+    if (body->update != MPM_USF) {
+        mpm_loads_scatter(body, step);
+        mpm_body_force_scatter(body);
+    }
     mpm_grid_assemble(body, step, body->update != MPM_USF);
     return AB_OK;
 }
@@ -103,6 +108,7 @@ static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report
     mpm_body *body = (mpm_body *)domain;
     AB_TRY(stress_all(body, step, false, true, report));
     mpm_loads_scatter(body, step);
+    mpm_body_force_scatter(body);
     mpm_grid_assemble(body, step, true);
     return AB_OK;
 }
@@ -191,7 +197,10 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
     mpm_filter(body);
     const bool remap = body->update == MPM_MUSL;
-    if (!remap) mpm_loads_work(body, step);
+    if (!remap) {
+        mpm_loads_work(body, step);
+        mpm_body_force_work(body, step);
+    }
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k)
         if (body->tiles[k].patch >= 0) body->kernel->finish[body->finish](body, k, step, remap, body->sums + k);
@@ -206,6 +215,7 @@ static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report
     mpm_body *body = (mpm_body *)domain;
     mpm_grid_assemble_remap(body);
     mpm_loads_work(body, step); /* what points gain from a nodal force is force x (mapped velocity before + after)/2, exactly */
+    mpm_body_force_work(body, step);
     return AB_OK;
 }
 
@@ -282,7 +292,8 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
                body->patch_capacity * 8 * mpm_patch_doubles(body) + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
                body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + (body->birth ? body->born * 16 : 0) +
-               (body->slot ? body->born * 4 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
+               (body->slot ? body->born * 4 : 0) + (body->domain.spec->has_force ? body->block_capacity * 128 : 0) +
+               mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
@@ -294,11 +305,11 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     }
     if (body->birth) strncat(p->fields, ", initial position", sizeof p->fields - strlen(p->fields) - 1);
     if (body->outline) strncat(p->fields, ", outline", sizeof p->fields - strlen(p->fields) - 1);
-    snprintf(p->passes, sizeof p->passes, "%s%s%s",
+    snprintf(p->passes, sizeof p->passes, "%s%s%s%s",
              body->update == MPM_MUSL  ? "points to grid, grid, grid to points and back, grid, stress"
              : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
-             body->load_count ? ", tractions" : "", body->outline ? ", outline" : "");
+             body->load_count ? ", tractions" : "", body->domain.spec->has_force ? ", body force" : "", body->outline ? ", outline" : "");
     if (body->order > 1) {
         const size_t used = strlen(p->passes);
         snprintf(p->passes + used, sizeof p->passes - used, ", filter of velocities %d times", body->order - 1);
@@ -337,6 +348,8 @@ static void measure(mpm_body *body) {
 /* Displacements need the places of the start: only where something asks for them. */
 static bool wants_birth(const mpm_body *body) {
     const ab_scene *scene = body->scene;
+    const ab_body_spec *spec = body->domain.spec;
+    if (spec->has_force && ((ab_number_variables(spec->force) | ab_number_variables(spec->force + 1)) & AB_VARIABLES_START)) return true;
     for (size_t f = 0; f < scene->output_field_count; ++f)
         if (!strcmp(scene->output_fields[f], "displacement")) return true;
     for (size_t m = 0; m < scene->monitor_count; ++m)

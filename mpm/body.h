@@ -53,6 +53,7 @@ typedef struct mpm_sums {                                 /* of one tile, one st
     double low[2], high[2];                               /* bounds of the new positions, m */
     double begin[2], end[2];                              /* least and largest first node of the stencils there, from the grid's corner */
     double speed2;                                        /* largest v.v */
+    double external;                                      /* of the body force, per s; set by its own pass */
     double strain, plastic;                               /* increments; these and the next are sums of the stress pass */
     double wave_speed;                                    /* largest, when asked for */
 } mpm_sums;
@@ -174,6 +175,8 @@ struct mpm_body {
 
     mpm_load *loads;
     size_t load_count;
+    double *body_force; /* N: 16 a block, along x, along y; NULL without one */
+    size_t body_force_capacity;
     uint32_t *slot; /* by id, block*8 + lane, UINT32_MAX: has left; only with loads or an outline */
 
     ab_energy energy;   /* totals so far */
@@ -234,6 +237,14 @@ ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);
 void mpm_loads_scatter(mpm_body *, const ab_step *);
 void mpm_loads_work(mpm_body *, const ab_step *);
 void mpm_loads_follow(mpm_body *, const ab_step *); /* with the velocities that strain the points, before they are strained */
+
+/* body_force.c: all of it nothing where the body has none */
+ab_status mpm_body_force_find(mpm_body *, const ab_step *,
+                              ab_report *); /* where the points are; AB_FAILED: a formula has no finite value */
+void mpm_body_force_scatter(mpm_body *);
+void mpm_body_force_work(mpm_body *, const ab_step *);
+size_t mpm_body_force_bytes(const mpm_body *);
+void mpm_body_force_destroy(mpm_body *);
 
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);

@@ -63,6 +63,9 @@ static const reading readings[] = {
     {"t", "1", 0, 0, "'t' cannot be used in this value; only constants are known here"},
     {"x", "1", AB_VARIABLE_T, 0, "only t (time, s) and constants"},
     {"z", "1", AB_VARIABLES_XY, 0, "'z' cannot be used"},
+    {"x + 10*y + 100*X + 1000*Y", "m", AB_VARIABLES_MOTION, 53, NULL}, /* ab_number_at knows no start */
+    {"X", "1", AB_VARIABLES_TXY, 0, "'X' cannot be used in this value; only t, x, y and constants"},
+    {"x", "1", AB_VARIABLES_T_START, 0, "'x' cannot be used in this value; only t, X, Y (m, the place at the start)"},
     {"1, 2", "1", 0, 0, "gives 2 numbers where one is needed"},
     {"1,5", "1", 0, 0, "gives 2 numbers where one is needed"},
     {"t = 5", "1", AB_VARIABLE_T, 0, "'=' and quotes have no place"},
