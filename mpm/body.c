@@ -15,7 +15,10 @@ enum { WAVE_SPEED_EVERY = 16 };
 enum { POINTS_PER_THREAD = 4000 };
 
 /* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen). */
-static double stable_courant(const mpm_body *body) { return body->kernel->courant[body->domain.spec->per_cell > 4]; }
+static double stable_courant(const mpm_body *body) {
+    const double per_direction = ceil(sqrt(body->domain.spec->per_cell));
+    return body->kernel->courant[(int)fmin(per_direction, 8.0) - 1];
+}
 
 static void destroy(ab_domain *domain) {
     mpm_body *body = (mpm_body *)domain;

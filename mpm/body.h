@@ -100,8 +100,8 @@ typedef struct mpm_kernel {
     double reach;             /* cells: farther away than this in some direction a point has no weight */
     bool domains;             /* points have domains of their own: rows half, inverse_half, and extent where they follow the stretch */
     bool moment, same_spread; /* apic takes moments of the velocities; D is the same everywhere but at sides: see transfer.inc */
-    double courant
-        [2]; /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places: up to two points per direction, and more */
+    /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places, with 1 .. 8 points per direction */
+    double courant[8];
     /* First nodes of the stencils of a block's points standing at rows x, x+1 (ROW_X or ROW_NEXT), counted from the grid's corner; with all rows up to date. */
     void (*first)(const mpm_body *, const double *block, int x, int32_t node[2][8]);
     void (*stencils)(const mpm_body *, const mpm_tile *, const double *block, mpm_stencils *);

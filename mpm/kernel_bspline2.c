@@ -3,8 +3,7 @@
 #define GIMP 0
 #define SPLINE 1
 #define BASIS "bspline2"
-#define COURANT                                                                                                                            \
-    { 0.954, 1.023 }
+#define COURANT 0.866, 0.954, 0.999, 1.023, 1.044, 1.063, 1.078, 1.091
 #define CARRY carry_bspline2
 #define NAME(f) f##_bspline2
 #include "mpm/kernel.inc"

@@ -3,8 +3,7 @@
 #define GIMP 0
 #define SPLINE 1
 #define BASIS "bspline3"
-#define COURANT                                                                                                                            \
-    { 1.472, 1.496 }
+#define COURANT 1.404, 1.472, 1.489, 1.496, 1.498, 1.499, 1.500, 1.500
 #define CARRY carry_bspline3
 #define NAME(f) f##_bspline3
 #include "mpm/kernel.inc"

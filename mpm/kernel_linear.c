@@ -4,8 +4,7 @@
 #define GIMP 0
 #define SPLINE 0
 #define BASIS "linear"
-#define COURANT                                                                                                                            \
-    { 0.664, 0.664 }
+#define COURANT 0.664, 0.664, 0.664, 0.664, 0.664, 0.664, 0.664, 0.664
 #define CARRY NULL
 #define NAME(f) f##_linear
 #include "mpm/kernel.inc"
