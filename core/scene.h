@@ -78,6 +78,8 @@ typedef struct ab_motion_spec { /* of a rigid body; what is not given follows fr
 
 typedef enum ab_transfer { AB_TRANSFER_FLIP = 0, AB_TRANSFER_APIC, AB_TRANSFER_TPIC, AB_TRANSFER_XPIC, AB_TRANSFER_FMPM } ab_transfer;
 
+typedef enum ab_f_bar { AB_F_BAR_NONE = 0, AB_F_BAR_CELL, AB_F_BAR_PATCH } ab_f_bar; /* which cells share the mean change of volume */
+
 typedef struct ab_body_spec {
     char *name;
     ab_mark mark;
@@ -89,6 +91,7 @@ typedef struct ab_body_spec {
     char *basis;     /* "linear" | "gimp" */
     bool contiguous; /* domains of gimp follow the stretch */
     ab_transfer transfer;
+    ab_f_bar f_bar;        /* material-points; elements have mesh.f_bar */
     int order;             /* AB_TRANSFER_XPIC, _FMPM: m */
     double flip;           /* AB_TRANSFER_FLIP: 1 flip, 0 pic */
     char *update;          /* "usf" | "usl" | "musl" */

@@ -95,6 +95,7 @@ static const unsigned belongs[BODY_KEYS] = {
     [BODY_BASIS] = POINTS,
     [BODY_TRANSFER] = POINTS,
     [BODY_UPDATE] = POINTS,
+    [BODY_F_BAR] = POINTS,
     [BODY_VELOCITY] = POINTS | ELEMENTS | RIGID,
     [BODY_GRAVITY] = POINTS | ELEMENTS | RIGID,
     [BODY_FORCE] = POINTS | ELEMENTS,
@@ -130,6 +131,9 @@ static void take_points(ab_scene_reader *r, const ab_node *const *v, const char 
     take_basis(r, v[BODY_BASIS], where, body);
     take_transfer(r, v[BODY_TRANSFER], where, body);
     ab_read_word(&r->base, &ab_section_body.keys[BODY_UPDATE], v[BODY_UPDATE], where, &body->update);
+    char *cells = NULL;
+    if (ab_read_word(&r->base, &ab_section_body.keys[BODY_F_BAR], v[BODY_F_BAR], where, &cells))
+        body->f_bar = strcmp(cells, "cell") == 0 ? AB_F_BAR_CELL : strcmp(cells, "patch") == 0 ? AB_F_BAR_PATCH : AB_F_BAR_NONE;
     if (body->basis != NULL && body->update != NULL && strcmp(body->basis, "linear") == 0 && strcmp(body->update, "usl") == 0)
         ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
                           "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",

@@ -104,6 +104,10 @@ static const ab_key body[] = {
                        .help = "how velocities come back; a blend is {flip: 0.99}, further ones are {xpic: 2} and {fmpm: 2}"},
     [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",
                      .help = "when stress is updated: first, last, last from mapped-back velocities"},
+    [BODY_F_BAR] = {"f_bar", AB_KEY_WORD, .words = "false|cell|patch", .initial = "false",
+                    .help =
+                        "against locking where volume is kept (nu near 0.5, plastic flow): the change of volume and the pressure are "
+                        "averaged over the points of a cell, or over a patch of 3 x 3 cells, which leaves no checkerboard of pressures"},
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
@@ -117,9 +121,9 @@ static const ab_key body[] = {
 };
 SECTION(
     body, "bodies.NAME", body, NULL,
-    "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer` and "
-    "`update` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and `motion` to rigid; the others "
-    "to all, `body_force` to all but rigid.",
+    "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer`, "
+    "`update` and `f_bar` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and `motion` to rigid; "
+    "the others to all, `body_force` to all but rigid.",
     "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
     "0]\n");
 

@@ -31,6 +31,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->keys, body->tile_capacity * sizeof *body->keys);
     ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
     ab_memory_give(body->filter, body->filter_capacity * sizeof(double) * FILTER_RECORD * AB_TILE_NODES);
+    ab_memory_give(body->volumetric, body->volumetric_capacity * sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
     mpm_trace_destroy(body->trace);
@@ -77,6 +78,7 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     mpm_outline_follow(body, step);
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
                            (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) && step->number % WAVE_SPEED_EVERY == 0;
+    if (body->f_bar) mpm_volumetric_strain(body, step);
     int failed = 0;
     const int none = INT_MAX;
     int first = none; /* block of the first tile that failed, whichever thread met it */
@@ -104,12 +106,17 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     }
     body->energy.strain += body->last_strain;
     if (body->ask_wave_speed && fastest > 0.0) body->wave_speed = fastest;
+    if (body->f_bar) {
+        if (advance && body->sort_due) AB_TRY(mpm_points_sort(body, report)); /* cells are those of the new places */
+        mpm_volumetric_stress(body);
+    }
     return AB_OK;
 }
 
 static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
-    AB_TRY(stress_all(body, step, false, true, report));
+    AB_TRY(stress_all(body, step, false, !body->f_bar, report));
+    if (body->f_bar) scatter_all(body);
     mpm_loads_scatter(body, step);
     mpm_body_force_scatter(body);
     mpm_grid_assemble(body, step, true);
@@ -225,8 +232,9 @@ static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report
 static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (body->update != MPM_USF) {
-        AB_TRY(stress_all(body, step, true, !body->sort_due, report));
-        body->scattered = !body->sort_due;
+        const bool fuse = !body->sort_due && !body->f_bar;
+        AB_TRY(stress_all(body, step, true, fuse, report));
+        body->scattered = fuse;
         return AB_OK;
     }
     const size_t rows = 8 * (size_t)body->rows.count;
@@ -294,13 +302,15 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
                body->patch_capacity * 8 * mpm_patch_doubles(body) + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
+               body->volumetric_capacity * 8 * VOLUMETRIC_RECORD * AB_TILE_NODES +
                body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) + (body->birth ? body->born * 16 : 0) +
                (body->slot ? body->born * 4 : 0) + (body->domain.spec->has_force ? body->block_capacity * 128 : 0) +
                mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
-    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s",
+    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
-             body->rows.gradient >= 0 ? ", deformation gradient" : "", body->rows.affine >= 0 ? ", affine velocity" : "");
+             body->rows.gradient >= 0 ? ", deformation gradient" : "", body->rows.affine >= 0 ? ", affine velocity" : "",
+             body->rows.mean_stress >= 0 ? ", mean stress of its own" : "");
     const ab_class *class_ = &body->material->loaded->class_;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         const size_t used = strlen(p->fields);
@@ -313,6 +323,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
              : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
              body->load_count ? ", tractions" : "", body->domain.spec->has_force ? ", body force" : "", body->outline ? ", outline" : "");
+    if (body->f_bar) strncat(p->passes, ", averages of volume change and mean stress", sizeof p->passes - strlen(p->passes) - 1);
     if (body->order > 1) {
         const size_t used = strlen(p->passes);
         snprintf(p->passes + used, sizeof p->passes - used, ", filter of velocities %d times", body->order - 1);
@@ -375,6 +386,7 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     body->scene = scene;
     mpm_transfer_choose(body);
     body->contiguous = spec->contiguous;
+    body->f_bar = spec->f_bar;
     body->gravity = spec->gravity;
     body->threads = threads;
     body->h = scene->grid_cell;
@@ -384,6 +396,11 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
         body->span[c] = scene->grid_cells[c] * body->h;
     }
     body->material = scene->materials + spec->material;
+    if (body->f_bar && !body->kernel->dilate) {
+        free(body);
+        return ab_report_error(report, spec->mark, "bodies.%s.f_bar: basis %s does not take it; use another basis, or leave f_bar out",
+                               spec->name, spec->basis);
+    }
     mpm_rows_plan(body);
     ab_fill *fill = NULL;
     ab_status status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);

@@ -35,12 +35,15 @@ enum { OWN_VELOCITY = 0, OWN_OLD = 2, OWN_MASS = 4, OWN_INVERSE = 5, OWN_RECORD 
 /* A node's part in the filter of xpic and fmpm: what is left to correct, and the sum of corrections, m/s. */
 enum { FILTER_REST = 0, FILTER_SUM = 2, FILTER_RECORD = 4 };
 
+enum { VOLUMETRIC_RECORD = 4 }; /* what f_bar keeps of a cell: see mpm/volumetric.c */
+
 typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int count;            /* rows in a block */
     int extent;           /* 3: (xx, yy, xy) of the domain tensor, m2 */
     int half;             /* 2: half sizes of the point's domain, m (gimp) */
     int inverse_half;     /* 2: their inverses */
     int gradient;         /* 4: deformation gradient xx, xy, yx, yy */
+    int mean_stress;      /* 1: (xx + yy)/2 as the material gave it, while that of the stress is averaged (f_bar) */
     int affine;           /* 4: of the velocity about the point, xx, xy, yx, yy (apic, tpic): see transfer.inc */
     int state, states;    /* the material's */
     bool turns;           /* some state is a vector or a tensor */
@@ -115,6 +118,8 @@ typedef struct mpm_kernel {
      * last three of mpm_sums. */
     void (*finish[MPM_FINISH_WAYS])(mpm_body *, size_t tile, const ab_step *, bool remap, mpm_sums *);
     void (*filter)(mpm_body *, size_t tile); /* xpic, fmpm: what FILTER_REST holds, to the points and back onto the patch */
+    void (*dilate)(mpm_body *, size_t tile,
+                   const ab_step *); /* f_bar: sums of V d and V by cells onto the patch (mpm/volumetric.h); NULL: not with it */
     /* Strain, stress, volumes and domains; with `advance` points then stand at ROW_NEXT. -1, or the block near which the material gave up. */
     int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *);
 } mpm_kernel;
@@ -136,6 +141,7 @@ struct mpm_body {
     int order;                 /* xpic, fmpm: m */
     bool full;                 /* fmpm: the filter takes the velocity after the forces, not the one before */
     bool contiguous, gravity;
+    ab_f_bar f_bar;
     int threads;
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 
@@ -153,10 +159,11 @@ struct mpm_body {
     mpm_tile *tiles;
     uint64_t *keys; /* of the tiles, ascending */
     size_t tile_count, tile_capacity;
-    double *own;     /* OWN_RECORD * AB_TILE_NODES per tile */
-    double *patches; /* mpm_patch_doubles per tile with points */
-    double *filter;  /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
-    size_t own_capacity, filter_capacity, patch_capacity, patch_count;
+    double *own;        /* OWN_RECORD * AB_TILE_NODES per tile */
+    double *patches;    /* mpm_patch_doubles per tile with points */
+    double *filter;     /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
+    double *volumetric; /* VOLUMETRIC_RECORD * AB_TILE_NODES per tile; NULL without f_bar */
+    size_t own_capacity, filter_capacity, volumetric_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
     uint64_t version; /* of the tile list */
@@ -214,6 +221,12 @@ void mpm_affine_start(mpm_body *, const ab_fill *); /* the slope of the velocity
 /* Of the point in a slot, at rows.x: twice the kinetic energy of its affine part, tr(C D C^T) (0 without one), and its angular momentum, per kg. */
 double mpm_affine_inner(const mpm_body *, size_t slot, double *spin, double *inertia);
 
+/* volumetric.c: f_bar only */
+void mpm_volumetric_strain(mpm_body *, const ab_step *);                 /* averages of the change of volume, before the stress pass */
+void mpm_volumetric_fetch(const mpm_body *, size_t tile, double *means); /* into a patch of pairs, their first: the average by cells */
+void mpm_volumetric_stress(
+    mpm_body *); /* after it: the stress of the points gets the average of the mean stress, theirs is kept in its row */
+
 /* tiles.c */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
                           ab_report *);                                  /* the tiles of `filled` (ascending) and their neighbours */
@@ -228,9 +241,11 @@ void mpm_grid_fetch_velocity(const mpm_body *, size_t tile, double *pairs);    /
 void mpm_grid_fetch_motion(const mpm_body *, size_t tile, double *quadruples); /* a patch of velocities and their changes in this step */
 void mpm_grid_fetch_filter(const mpm_body *, size_t tile, int from, double *pairs); /* a patch of FILTER_REST or FILTER_SUM */
 void mpm_grid_filter_start(mpm_body *);                                             /* the rest is the whole velocity to be corrected */
-void mpm_grid_filter_assemble(mpm_body *);       /* the rest loses what came back, the sum gains the rest */
-double mpm_grid_damp(mpm_body *, double factor); /* after contact; energy taken, J */
-void mpm_grid_limit_light(mpm_body *);           /* USL: light nodes take their old velocity for the strain */
+void mpm_grid_filter_assemble(mpm_body *); /* the rest loses what came back, the sum gains the rest */
+void mpm_grid_fetch_volumetric(const mpm_body *, size_t tile, int from, double *pairs); /* a patch of two numbers of the records of f_bar */
+void mpm_grid_add_pairs(const mpm_body *, size_t tile, double *sum);                    /* what patches of pairs hold of its own nodes */
+double mpm_grid_damp(mpm_body *, double factor);                                        /* after contact; energy taken, J */
+void mpm_grid_limit_light(mpm_body *); /* USL: light nodes take their old velocity for the strain */
 
 /* loads.c */
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);

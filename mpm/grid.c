@@ -142,6 +142,12 @@ void mpm_grid_fetch_filter(const mpm_body *body, size_t number, int from, double
     fetch(body, number, body->filter + from, FILTER_RECORD, 2, pairs);
 }
 
+void mpm_grid_fetch_volumetric(const mpm_body *body, size_t number, int from, double *pairs) {
+    fetch(body, number, body->volumetric + from, VOLUMETRIC_RECORD, 2, pairs);
+}
+
+void mpm_grid_add_pairs(const mpm_body *body, size_t number, double *sum) { add_patches(body, body->tiles + number, 2, sum); }
+
 void mpm_grid_filter_start(mpm_body *body) {
     const int from = body->full ? OWN_VELOCITY : OWN_OLD;
     for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {

@@ -8,7 +8,8 @@
 
 void mpm_rows_plan(mpm_body *body) {
     const ab_class *class_ = &body->material->loaded->class_;
-    mpm_rows rows = {.count = ROW_OTHERS, .extent = -1, .half = -1, .inverse_half = -1, .gradient = -1, .affine = -1, .state = -1};
+    mpm_rows rows = {
+        .count = ROW_OTHERS, .extent = -1, .half = -1, .inverse_half = -1, .gradient = -1, .mean_stress = -1, .affine = -1, .state = -1};
     bool gap = false; /* a finder that looks at points near nodes or faces needs the size of a point in every direction */
     for (size_t k = 0; k < body->scene->contact_count; ++k) {
         const ab_contact_spec *contact = body->scene->contacts + k;
@@ -19,6 +20,7 @@ void mpm_rows_plan(mpm_body *body) {
     if (gap || (domains && body->contiguous)) rows.extent = rows.count, rows.count += 3;
     if (domains) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
+    if (body->f_bar) rows.mean_stress = rows.count, rows.count += 1;
     if (body->finish == MPM_FINISH_AFFINE) rows.affine = rows.count, rows.count += 4;
     rows.states = ab_state_count(class_);
     rows.turns = ab_state_turns(class_);
