@@ -36,12 +36,19 @@ static const ab_command commands[] = {
      AB_OPTION_SET | AB_OPTION_PLUGIN_PATH, 1, 1, ab_command_check},
     {"plan", "SCENE", "what this scene needs, and what it will not pay for: points, memory, passes, plugins, steps, time", NULL,
      AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_JSON, 1, 1, ab_command_plan},
+    {"trade", "SCENE", "accuracy against cost: run a scene with several settings, and set its errors beside its cost",
+     "The settings are those of the scene's `trade` (abut help scene), or given by --vary; every combination is run, each in a process of "
+     "its own. What was run "
+     "before with the\nsame scene is not run again. trade.csv, trade.json and trade.svg land in the results folder.\n"
+     "  abut trade tests/verification/bar_1.yaml --vary constants.cells=25,50,100 --vary bodies.bar.basis=linear,gimp --tolerance 1e-2",
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_VARY | AB_OPTION_TOLERANCE |
+         AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE,
+     1, 1, ab_command_trade},
     {"plugins", "[show NAME]", "list the plugins found, or tell all about one: settings with unit, range, default",
      "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 2,
      command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
-    {"trade", "SCENE", "accuracy against cost", NULL, 0, 0, 0, NULL},
     {"extremes", "SCENE", "how far a setting goes", NULL, 0, 0, 0, NULL},
     {.name = NULL},
 };

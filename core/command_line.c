@@ -27,6 +27,11 @@ static const option_text option_texts[] = {
     {AB_OPTION_QUIET, "quiet", 'q', NULL, "no progress and no closing table"},
     {AB_OPTION_STRICT, "strict", 0, NULL, "exit 3 when an expect of the scene is missed"},
     {AB_OPTION_JSON, "json", 0, NULL, "print JSON"},
+    {AB_OPTION_VARY, "vary", 0, "PATH=VALUES", "values to try at PATH, separated by commas, from cheap to dear; may be repeated"},
+    {AB_OPTION_TOLERANCE, "tolerance", 0, "ERROR", "which is the cheapest run with no larger error than this"},
+    {AB_OPTION_SECONDS, "seconds", 0, "S", "which is the most accurate run that takes no more processor time than this"},
+    {AB_OPTION_JOBS, "jobs", 0, "N", "runs at a time (default: 1); more disturb each other's times"},
+    {AB_OPTION_WRITE, "write", 0, "FILE", "write the scene with the settings that were found"},
 };
 enum { option_count = sizeof option_texts / sizeof *option_texts };
 
@@ -98,23 +103,29 @@ static int unknown_option(const ab_command *command, const char *given) {
     return wrong(command, "unknown option '%s'", given, remedy);
 }
 
-static int read_threads(const ab_command *command, const char *text, int *threads) {
+static int read_count(const ab_command *command, const char *text, int *count, const char *complaint, const char *remedy) {
     char *end = NULL;
     errno = 0;
     const long value = strtol(text, &end, 10);
-    if (errno || end == text || *end || value < 1 || value > most_threads)
-        return wrong(command, "-j wants a number of threads from 1 to 4096, not '%s'", text,
-                     "leave it out to use as many as the scene is worth");
-    *threads = (int)value;
+    if (errno || end == text || *end || value < 1 || value > most_threads) return wrong(command, complaint, text, remedy);
+    *count = (int)value;
     return AB_OK;
 }
 
-static int read_override(const ab_command *command, char *text, ab_command_line *line) {
+/* A positive number, which the scene's own check reads again. */
+static int read_positive(const ab_command *command, const char *text, const char **kept, const char *complaint) {
+    char *end = NULL;
+    const double value = strtod(text, &end);
+    if (end == text || *end || !(value > 0)) return wrong(command, complaint, text, "for example 1e-2");
+    *kept = text;
+    return AB_OK;
+}
+
+static int read_pair(const ab_command *command, char *text, ab_override *list, size_t *count, const char *complaint, const char *remedy) {
     char *equals = strchr(text, '=');
-    if (!equals || equals == text)
-        return wrong(command, "--set wants PATH=VALUE, not '%s'", text, "for example --set contact[0].friction=0.3");
+    if (!equals || equals == text) return wrong(command, complaint, text, remedy);
     *equals = '\0'; /* argv is ours to cut */
-    line->overrides[line->override_count++] = (ab_override){text, equals + 1};
+    list[(*count)++] = (ab_override){text, equals + 1};
     return AB_OK;
 }
 
@@ -124,8 +135,24 @@ static int read_option(const ab_command *command, const option_text *option, cha
         if (!value[0]) return wrong(command, "%s wants the name of a folder", "-o", "");
         line->output = value;
         return AB_OK;
-    case AB_OPTION_THREADS: return read_threads(command, value, &line->threads);
-    case AB_OPTION_SET: return read_override(command, value, line);
+    case AB_OPTION_THREADS:
+        return read_count(command, value, &line->threads, "-j wants a number of threads from 1 to 4096, not '%s'",
+                          "leave it out to use as many as the scene is worth");
+    case AB_OPTION_JOBS:
+        return read_count(command, value, &line->jobs, "--jobs wants a number of runs from 1 to 4096, not '%s'",
+                          "leave it out for one at a time");
+    case AB_OPTION_SET:
+        return read_pair(command, value, line->overrides, &line->override_count, "--set wants PATH=VALUE, not '%s'",
+                         "for example --set contact[0].friction=0.3");
+    case AB_OPTION_VARY:
+        return read_pair(command, value, line->vary, &line->vary_count, "--vary wants PATH=VALUE,VALUE,..., not '%s'",
+                         "for example --vary constants.cells=20,40,80");
+    case AB_OPTION_TOLERANCE: return read_positive(command, value, &line->tolerance, "--tolerance wants an error above 0, not '%s'");
+    case AB_OPTION_SECONDS: return read_positive(command, value, &line->seconds, "--seconds wants a time above 0, not '%s'");
+    case AB_OPTION_WRITE:
+        if (!value[0]) return wrong(command, "%s wants the name of a file", "--write", "");
+        line->write = value;
+        return AB_OK;
     case AB_OPTION_PLUGIN_PATH: line->plugin_path = value; return AB_OK;
     case AB_OPTION_QUIET: line->quiet = true; return AB_OK;
     case AB_OPTION_STRICT: line->strict = true; return AB_OK;
@@ -155,7 +182,8 @@ int ab_command_line_read(const ab_command *command, int argc, char **argv, ab_co
         if (text->letter && text->value) shorts[letters++] = ':';
     }
     line->overrides = calloc((size_t)argc + 1, sizeof *line->overrides);
-    if (!line->overrides) return wrong(command, "%s", "no memory", "");
+    line->vary = calloc((size_t)argc + 1, sizeof *line->vary);
+    if (!line->overrides || !line->vary) return wrong(command, "%s", "no memory", "");
     optind = 0; /* from the start, with glibc's own state cleared */
     opterr = 0;
     for (;;) {
@@ -182,6 +210,7 @@ int ab_command_line_read(const ab_command *command, int argc, char **argv, ab_co
 
 void ab_command_line_clear(ab_command_line *line) {
     free(line->overrides);
-    line->overrides = NULL;
-    line->override_count = 0;
+    free(line->vary);
+    line->overrides = line->vary = NULL;
+    line->override_count = line->vary_count = 0;
 }

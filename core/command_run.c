@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* results/NAME: NAME is the scene's folder where the file is called scene.yaml, else the file without its ending. */
-static void default_folder(const char *scene, char *folder, size_t size) {
+void ab_command_folder(const char *scene, char *folder, size_t size) {
     char full[PATH_MAX];
     if (!realpath(scene, full)) snprintf(full, sizeof full, "%s", scene);
     char *file = strrchr(full, '/');
@@ -35,7 +34,7 @@ static int with_scene(const ab_command_line *line,
     ab_status status = ab_command_scene(line, &registry, &scene, report);
     if (status == AB_OK) {
         char folder[PATH_MAX + 16];
-        default_folder(line->words[0], folder, sizeof folder);
+        ab_command_folder(line->words[0], folder, sizeof folder);
         const ab_run_options options = {.folder = line->output ? line->output : folder,
                                         .threads = line->threads ? line->threads : omp_get_max_threads(),
                                         .quiet = line->quiet,

@@ -11,7 +11,12 @@ enum ab_option_bits { /* options a command takes */
                       AB_OPTION_PLUGIN_PATH = 8u,
                       AB_OPTION_QUIET = 16u,
                       AB_OPTION_STRICT = 32u,
-                      AB_OPTION_JSON = 64u
+                      AB_OPTION_JSON = 64u,
+                      AB_OPTION_VARY = 128u,
+                      AB_OPTION_TOLERANCE = 256u,
+                      AB_OPTION_SECONDS = 512u,
+                      AB_OPTION_JOBS = 1024u,
+                      AB_OPTION_WRITE = 2048u
 };
 
 /* A command line once it is understood. Texts are borrowed from argv. */
@@ -22,6 +27,11 @@ typedef struct ab_command_line {
     bool quiet, strict, json;
     ab_override *overrides; /* --set, in order */
     size_t override_count;
+    ab_override *vary; /* --vary PATH=VALUE,VALUE,... in order */
+    size_t vary_count;
+    const char *tolerance, *seconds; /* as written; NULL: not given */
+    int jobs;                        /* 0: not given */
+    const char *write;               /* --write FILE */
     char **words; /* what is not an option: the scene, or the words of `abut plugins` */
     int word_count;
     const ab_method *methods; /* main's table: how a body of each method is made */
@@ -55,6 +65,10 @@ ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, 
 int ab_command_run(const ab_command_line *line);
 int ab_command_check(const ab_command_line *line);
 int ab_command_plan(const ab_command_line *line);
+int ab_command_trade(const ab_command_line *line); /* command_trade.c */
+
+/* results/NAME: NAME is the scene's folder where the file is called scene.yaml, else the file without its ending. */
+void ab_command_folder(const char *scene, char *folder, size_t size);
 
 /* core/command_plugins.c: argv[0] is "plugins", then the words behind it. */
 int ab_command_plugins(int argc, char **argv, const char *plugin_path);

@@ -57,6 +57,13 @@ bool ab_node_is_null(const ab_node *node);
 /* "a mapping", "a list", "a text", for messages. */
 const char *ab_node_kind_name(const ab_node *node);
 
+/* A value as one line of YAML, as --set takes it, in the arena; NULL: no memory. */
+char *ab_node_flow(ab_arena *arena, const ab_node *node);
+
+/* The whole document as YAML, comments left out. */
+struct ab_text;
+void ab_document_write(struct ab_text *text, const ab_document *document);
+
 /* Puts VALUE (YAML, flow style) at PATH, such as contact[0].friction or bodies.block.fill.per_cell. A last key that is not there is added,
  * mappings on the way too, but for entries that the user names (bodies.NAME, materials.NAME), which must exist. */
 ab_status ab_document_set(ab_document *document, const char *path, const char *value, ab_report *report);

@@ -159,6 +159,24 @@ typedef struct ab_expect_spec {
     double tolerance, scale; /* scale 0: the reference's own size */
 } ab_expect_spec;
 
+typedef struct ab_ladder { /* of `trade`: a setting and its values, from cheap to dear */
+    const char *name;
+    const char **paths; /* as for --set; all of them get the value */
+    size_t path_count;
+    const char **values; /* YAML */
+    size_t value_count;
+    ab_mark mark;
+} ab_ladder;
+
+typedef struct ab_trade_spec { /* no ladders: the scene has no `trade` */
+    ab_ladder *ladders;
+    size_t ladder_count;
+    size_t *judges; /* expects that count; none: all */
+    size_t judge_count;
+    double tolerance, seconds; /* of the closing sentence */
+    double limit;              /* s of wall time for a run; INFINITY: none */
+} ab_trade_spec;
+
 typedef struct ab_scene {
     char *path, *title;
     ab_space space;
@@ -187,6 +205,7 @@ typedef struct ab_scene {
     char **output_fields;
     size_t output_field_count;
     bool has_output, has_history;
+    ab_trade_spec trade;
     struct ab_scene_private *private_; /* document, parsers, arena */
 } ab_scene;
 

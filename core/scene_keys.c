@@ -35,7 +35,7 @@ static const ab_key top[] = {
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_LATER, .help = "leave the key out"},
-    [TOP_TRADE] = {"trade", AB_KEY_LATER, .help = "vary a setting with --set PATH=VALUE"},
+    [TOP_TRADE] = {"trade", AB_KEY_SECTION, .help = "settings that `abut trade` tries; a run does not look at them"},
 };
 SECTION(top, "The scene", top, NULL, "Top level of the file.",
         "abut: 1\ntitle: Block on a plane\nspace: plane-strain\ngravity: [0, -9.81]\n");
@@ -344,16 +344,35 @@ SECTION(expect, "expect[i]", expect, NULL,
         "A list. Each compares a monitor or a column with a reference; `abut run --strict` exits 3 when one misses.",
         "expect:\n  - {name: slides, monitor: block_x, reference: \"0.5*a*t^2\", norm: l2, tolerance: 0.02}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,
-                                         &ab_section_time,     &ab_section_grid,
-                                         &ab_section_sides,    &ab_section_material,
-                                         &ab_section_body,     &ab_section_shape,
-                                         &ab_section_disc,     &ab_section_ring,
-                                         &ab_section_fill,     &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_mesh,
-                                         &ab_section_patch,    &ab_section_arc,
-                                         &ab_section_fix,      &ab_section_motion,
-                                         &ab_section_contact,  &ab_section_load,
-                                         &ab_section_where,    &ab_section_monitor,
-                                         &ab_section_history,  &ab_section_output,
-                                         &ab_section_expect,   NULL};
+static const ab_key trade[] = {
+    [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders; every combination is run"},
+    [TRADE_ERROR] = {"error", AB_KEY_SECTION,
+                     .help =
+                         "list of names of expects: the error of a run is the largest of theirs; default: all. A scene without expects is "
+                         "measured by its monitors against the finest of its runs"},
+    [TRADE_TOLERANCE] = {"tolerance", AB_KEY_NUMBER, .unit = "1", .initial = "0.01", POSITIVE,
+                         .help = "the error to be met for the least cost"},
+    [TRADE_SECONDS] = {"seconds", AB_KEY_NUMBER, .unit = "s", .initial = "10", POSITIVE,
+                       .help = "the cost within which to be most accurate"},
+    [TRADE_LIMIT] = {"limit", AB_KEY_NUMBER, .unit = "s", POSITIVE,
+                     .help = "a run that takes longer is stopped, and dearer ones of the same ladder are not tried; default: none"},
+};
+SECTION(trade, "trade", trade, NULL, "Accuracy against cost: `abut trade SCENE` runs the scene with every combination of settings.",
+        "trade:\n  vary:\n    - {set: constants.cells, values: [20, 40, 80]}\n    - {name: basis, set: [bodies.a.basis, bodies.b.basis], "
+        "values: [linear, gimp]}\n  tolerance: 1e-2\n  seconds: 10\n");
+
+static const ab_key ladder[] = {
+    [LADDER_SET] = {"set", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED,
+                    .help = "path of a value, as for --set, or a list of paths that all get it"},
+    [LADDER_VALUES] = {"values", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "list of values, from cheap to dear"},
+    [LADDER_NAME] = {"name", AB_KEY_TEXT, .help = "what the table calls it; default: the path"},
+};
+SECTION(ladder, "trade.vary[i]", ladder, NULL, "A list.", "- {set: grid.cell, values: [0.5, 0.25, 0.125]}\n");
+
+const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,  &ab_section_time,    &ab_section_grid,
+                                         &ab_section_sides,    &ab_section_material, &ab_section_body,    &ab_section_shape,
+                                         &ab_section_disc,     &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
+                                         &ab_section_transfer, &ab_section_mesh,     &ab_section_patch,   &ab_section_arc,
+                                         &ab_section_fix,      &ab_section_motion,   &ab_section_contact, &ab_section_load,
+                                         &ab_section_where,    &ab_section_monitor,  &ab_section_history, &ab_section_output,
+                                         &ab_section_expect,   &ab_section_trade,    &ab_section_ladder,  NULL};

@@ -1,0 +1,158 @@
+/* command_trade.c: abut trade: reads the scene with what the command line adds to its `trade`, runs, judges, writes. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/commands.h"
+#include "core/trade.h"
+
+/* "PATH=a,b" as an entry of trade.vary; commas inside brackets or quotes belong to a value, so YAML itself takes the list apart. */
+static void add_vary(ab_text *text, const ab_override *vary, bool first) {
+    ab_text_add(text, "%s{set: ", first ? "[" : ", ");
+    ab_text_add_escaped(text, vary->path);
+    ab_text_add(text, ", values: [%s]}", vary->value);
+}
+
+/* The scene, read with all of --set and with --vary, --tolerance and --seconds as settings of its `trade`. */
+static ab_status read_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report) {
+    ab_override more[3];
+    size_t count = 0;
+    ab_text vary = {0};
+    for (size_t i = 0; i < line->vary_count; i++) add_vary(&vary, &line->vary[i], i == 0);
+    ab_text_add(&vary, "]");
+    if (line->vary_count > 0) more[count++] = (ab_override){"trade.vary", vary.bytes};
+    if (line->tolerance != NULL) more[count++] = (ab_override){"trade.tolerance", line->tolerance};
+    if (line->seconds != NULL) more[count++] = (ab_override){"trade.seconds", line->seconds};
+    ab_command_line whole = *line;
+    whole.overrides = calloc(line->override_count + count + 1, sizeof *whole.overrides);
+    ab_status status = AB_FAILED;
+    if (whole.overrides == NULL || vary.failed) {
+        fprintf(stderr, "abut: error: no memory\n");
+    } else {
+        if (line->override_count > 0) memcpy(whole.overrides, line->overrides, line->override_count * sizeof *more);
+        memcpy(whole.overrides + line->override_count, more, count * sizeof *more);
+        whole.override_count = line->override_count + count;
+        status = ab_command_scene(&whole, registry, scene, report);
+    }
+    free(whole.overrides);
+    ab_text_clear(&vary);
+    return status;
+}
+
+/* Every value of every ladder on its own, the others as the scene has them: what the scene's check refuses is said before anything runs. */
+static ab_status check_values(const ab_command_line *line, const ab_scene *scene, ab_registry *registry, ab_report *report) {
+    ab_override *list = calloc(line->override_count + AB_TRADE_PATHS, sizeof *list);
+    if (list == NULL) return ab_report_failure(report, "no memory");
+    if (line->override_count > 0) memcpy(list, line->overrides, line->override_count * sizeof *list);
+    ab_status status = AB_OK;
+    for (size_t k = 0; k < scene->trade.ladder_count; k++) {
+        const ab_ladder *ladder = &scene->trade.ladders[k];
+        size_t wrong = 0;
+        ab_report *first = NULL;
+        for (size_t v = 0; v < ladder->value_count; v++) {
+            for (size_t p = 0; p < ladder->path_count; p++)
+                list[line->override_count + p] = (ab_override){ladder->paths[p], ladder->values[v]};
+            ab_report *own = ab_report_create();
+            ab_scene *tried = NULL;
+            if (own != NULL &&
+                ab_scene_read(line->words[0], list, line->override_count + ladder->path_count, registry, &tried, own) != AB_OK)
+                wrong++;
+            ab_scene_destroy(tried);
+            if (first == NULL && wrong > 0)
+                first = own;
+            else
+                ab_report_destroy(own);
+        }
+        if (wrong == ladder->value_count &&
+            first != NULL) { /* some may go only with another ladder's value; all of them is a mistake in the path */
+            status = ab_report_error(report, ladder->mark, "no value of '%s' is accepted; the first mistake: %s", ladder->name,
+                                     ab_report_first_error(first) != NULL ? ab_report_first_error(first) : "not known");
+        }
+        ab_report_destroy(first);
+    }
+    free(list);
+    return status;
+}
+
+/* The scene with the settings of one run, on stdout's terms: a file that `abut run` takes. */
+static ab_status write_scene(const ab_command_line *line, const ab_trade *trade, size_t chosen, ab_report *report) {
+    if (chosen == SIZE_MAX) return ab_report_failure(report, "%s is not written: no run met the tolerance or the time", line->write);
+    ab_document *document = NULL;
+    AB_TRY(ab_document_read(trade->scene, &document, report));
+    ab_status status = AB_OK;
+    for (size_t i = 0; i < trade->override_count && status == AB_OK; i++)
+        status = ab_document_set(document, trade->overrides[i].path, trade->overrides[i].value, report);
+    for (size_t k = 0; k < trade->spec->ladder_count; k++) {
+        const ab_ladder *ladder = &trade->spec->ladders[k];
+        for (size_t p = 0; p < ladder->path_count && status == AB_OK; p++)
+            status = ab_document_set(document, ladder->paths[p], ladder->values[trade->trials[chosen].rung[k]], report);
+    }
+    ab_text text = {0};
+    char settings[2000];
+    ab_text_add(&text, "# %s with %s\n", trade->scene, ab_trade_settings(trade, &trade->trials[chosen], settings, sizeof settings));
+    ab_document_write(&text, document);
+    if (status == AB_OK)
+        status = text.failed ? ab_report_failure(report, "no memory for %s", line->write)
+                             : ab_file_replace(line->write, text.bytes, text.count, report);
+    ab_text_clear(&text);
+    ab_document_destroy(document);
+    if (status == AB_OK) printf("  %s holds the scene with %s\n", line->write, settings);
+    return status;
+}
+
+static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene, ab_registry *registry, ab_report *report) {
+    if (scene->trade.ladder_count == 0)
+        return ab_report_error(report, AB_NOWHERE,
+                               "%s has no `trade`, and no --vary is given: nothing to try; for example --vary grid.cell=0.5,0.25,0.125",
+                               line->words[0]);
+    AB_TRY(check_values(line, scene, registry, report));
+    char folder[PATH_MAX + 32], base[PATH_MAX + 16];
+    ab_command_folder(line->words[0], base, sizeof base);
+    snprintf(folder, sizeof folder, "%s-trade", base);
+    ab_trade trade = {.scene = line->words[0],
+                      .folder = line->output != NULL ? line->output : folder,
+                      .plugin_path = line->plugin_path,
+                      .spec = &scene->trade,
+                      .overrides = line->overrides,
+                      .override_count = line->override_count,
+                      .jobs = line->jobs > 0 ? line->jobs : 1,
+                      .threads = line->threads > 0 ? line->threads : 1,
+                      .quiet = line->quiet};
+    ab_status status = ab_trade_plan(&trade, report);
+    if (status == AB_OK) status = ab_trade_run(&trade, scene, report);
+    const bool stopped = status > 128;
+    if (status == AB_OK || stopped) { /* what is done is judged all the same */
+        ab_status judged = ab_trade_judge(&trade, scene, report);
+        if (judged == AB_OK) judged = ab_trade_write(&trade, report);
+        if (judged == AB_OK) ab_trade_table(&trade, stdout);
+        if (judged == AB_OK && line->write != NULL) {
+            size_t chosen = ab_trade_cheapest(&trade, scene->trade.tolerance);
+            if (chosen == SIZE_MAX) chosen = ab_trade_most_accurate(&trade, scene->trade.seconds);
+            judged = write_scene(line, &trade, chosen, report);
+        }
+        if (judged == AB_OK) printf("  %s holds trade.csv, trade.json and trade.svg\n", trade.folder);
+        if (!stopped) status = judged;
+    }
+    ab_trade_clear(&trade);
+    return status;
+}
+
+int ab_command_trade(const ab_command_line *line) {
+    ab_report *report = ab_report_create();
+    if (report == NULL) {
+        fprintf(stderr, "abut: error: no memory\n");
+        return AB_FAILED;
+    }
+    ab_registry *registry = NULL;
+    ab_scene *scene = NULL;
+    ab_status status = read_scene(line, &registry, &scene, report);
+    if (status == AB_OK) {
+        ab_report_print(report, stderr);
+        status = trade_scene(line, scene, registry, report);
+        ab_report_print(report, stderr);
+        ab_scene_destroy(scene);
+        ab_registry_destroy(registry);
+    }
+    ab_report_destroy(report);
+    return (int)status;
+}

@@ -1,0 +1,81 @@
+/* trade.h: what accuracy costs: one scene run with several settings, its errors beside its cost. Commands that call for many runs share the runs.
+ *
+ * A ladder is a setting with its values, from cheap to dear; the runs are all combinations. Each run is a process of its own, so that its time and memory are its own and that
+ * a run that fails takes nothing with it; each has a folder under DIR/runs, and one that is there already, of the same scene, is not run again. */
+#ifndef AB_TRADE_H
+#define AB_TRADE_H
+
+#include <stdio.h>
+
+#include "core/document.h"
+#include "core/files.h"
+#include "core/scene.h"
+
+enum { AB_TRADE_LADDERS = 8, AB_TRADE_VALUES = 64, AB_TRADE_PATHS = 16, AB_TRADE_RUNS = 4096 };
+
+typedef enum ab_trial_state {
+    AB_TRIAL_WAITING = 0,
+    AB_TRIAL_RUNNING,
+    AB_TRIAL_DONE,
+    AB_TRIAL_FAILED,  /* the run broke off: blow-up, no memory */
+    AB_TRIAL_REFUSED, /* the settings do not go together: exit 2 */
+    AB_TRIAL_LIMIT,   /* stopped at the limit of seconds */
+    AB_TRIAL_SKIPPED  /* hopeless: a cheaper run of the same ladder was over the limit */
+} ab_trial_state;
+
+typedef struct ab_trial { /* one run */
+    size_t rung[AB_TRADE_LADDERS];
+    ab_trial_state state;
+    char *folder, *why;     /* why: it is not done; one line */
+    bool kept;              /* from an earlier call */
+    double wall, cpu;       /* s, of the process */
+    double bytes;           /* largest resident set */
+    double remainder;       /* of the ledger, relative to the largest energy that moved */
+    double error;           /* the largest of `errors`; NaN: not known */
+    double *errors;         /* per judge */
+    double *values, *peaks; /* per judge: what was measured; of a monitor, its largest size in the run */
+    bool front;             /* no other run is both cheaper and better */
+    int process;            /* while it runs */
+    double started;
+} ab_trial;
+
+typedef struct ab_judge { /* what errors are measured of: an expect, or a monitor's last value against the best that the runs know */
+    const char *name;
+    bool monitor;
+    double reference; /* monitors: extrapolated, or of the finest run */
+} ab_judge;
+
+typedef struct ab_trade {
+    const char *scene, *folder, *plugin_path;
+    const ab_trade_spec *spec;
+    const ab_override *overrides; /* of the command line, before the settings */
+    size_t override_count;
+    int jobs, threads;
+    bool quiet;
+    char fingerprint[40]; /* of the scene file, its overrides and the program */
+    ab_trial *trials;
+    size_t count;
+    ab_judge *judges;
+    size_t judge_count;
+    char reference[600]; /* how the references of monitors were found; "" with expects */
+} ab_trade;
+
+/* All combinations as trials, the last ladder changing fastest; folders named. */
+ab_status ab_trade_plan(ab_trade *trade, ab_report *report);
+void ab_trade_clear(ab_trade *trade);
+/* Runs what is not there yet, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
+ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_report *report);
+/* Errors, remainders and the front from what the runs wrote. */
+ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *report);
+/* The cheapest run with an error of at most `tolerance`, the most accurate within `seconds` of processor time; SIZE_MAX: none. */
+size_t ab_trade_cheapest(const ab_trade *trade, double tolerance);
+size_t ab_trade_most_accurate(const ab_trade *trade, double seconds);
+/* "constants.cells=40, basis=gimp" */
+const char *ab_trade_settings(const ab_trade *trade, const ab_trial *trial, char *text, size_t size);
+
+/* trade_write.c, trade_picture.c: the table on a stream; trade.csv, trade.json, trade.svg in the folder. */
+void ab_trade_table(const ab_trade *trade, FILE *stream);
+ab_status ab_trade_write(const ab_trade *trade, ab_report *report);
+void ab_trade_picture(const ab_trade *trade, ab_text *svg);
+
+#endif

@@ -1,0 +1,224 @@
+/* trade_judge.c: what the runs of a trade are worth: errors from what they wrote, and which of them no other beats in both error and cost. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/trade.h"
+
+static double number_of(const ab_node *map, const char *key) {
+    const ab_node *node = ab_node_find(map, key);
+    return node != NULL && node->kind == AB_NODE_SCALAR && !ab_node_is_null(node) ? strtod(node->text, NULL) : NAN;
+}
+
+static ab_status choose_judges(ab_trade *trade, const ab_scene *scene, ab_report *report) {
+    const bool chosen = trade->spec->judge_count > 0, monitors = scene->expect_count == 0;
+    const size_t count = chosen ? trade->spec->judge_count : monitors ? scene->monitor_count : scene->expect_count;
+    if (count == 0)
+        return ab_report_failure(report, "%s has neither expects nor monitors, so there is nothing to measure an error of; add one",
+                                 trade->scene);
+    trade->judges = calloc(count, sizeof *trade->judges);
+    if (trade->judges == NULL) return ab_report_failure(report, "no memory to judge the runs");
+    trade->judge_count = count;
+    for (size_t k = 0; k < count; k++)
+        trade->judges[k] = (ab_judge){.name = monitors ? scene->monitors[k].name : scene->expects[chosen ? trade->spec->judges[k] : k].name,
+                                      .monitor = monitors,
+                                      .reference = NAN};
+    for (size_t i = 0; i < trade->count; i++) {
+        ab_trial *trial = &trade->trials[i];
+        trial->errors = calloc(count, sizeof *trial->errors);
+        trial->values = calloc(count, sizeof *trial->values);
+        trial->peaks = calloc(count, sizeof *trial->peaks);
+        if (trial->errors == NULL || trial->values == NULL || trial->peaks == NULL)
+            return ab_report_failure(report, "no memory to judge the runs");
+        for (size_t k = 0; k < count; k++) trial->errors[k] = trial->values[k] = NAN;
+    }
+    return AB_OK;
+}
+
+static void fail(ab_trial *trial, const char *why) {
+    trial->state = AB_TRIAL_FAILED;
+    free(trial->why);
+    trial->why = strdup(why);
+}
+
+static void read_summary(const ab_trade *trade, ab_trial *trial, ab_report *report) {
+    char path[4200];
+    snprintf(path, sizeof path, "%s/summary.json", trial->folder);
+    ab_document *document = NULL;
+    if (ab_document_read(path, &document, report) != AB_OK) {
+        fail(trial, "its summary.json cannot be read; remove the run's folder and begin again");
+        return;
+    }
+    const ab_node *ledger = ab_node_find(document->root, "ledger"), *expects = ab_node_find(document->root, "expects");
+    if (ledger != NULL) trial->remainder = number_of(ledger, "remainder_relative");
+    for (size_t e = 0; expects != NULL && expects->kind == AB_NODE_LIST && e < expects->count; e++) {
+        const ab_node *name = ab_node_find(expects->items[e], "name");
+        for (size_t k = 0; k < trade->judge_count; k++) {
+            if (trade->judges[k].monitor || name == NULL || strcmp(name->text, trade->judges[k].name) != 0) continue;
+            trial->errors[k] = fabs(number_of(expects->items[e], "error"));
+            trial->values[k] = number_of(expects->items[e], "value");
+        }
+    }
+    ab_document_destroy(document);
+}
+
+/* The last row of history.csv, and the largest value of each column: a row may be longer than any buffer of a fixed size, so the file is gone through field by field. */
+static void read_history(const ab_trade *trade, ab_trial *trial) {
+    enum { FIELD = 400 };
+    char path[4200], field[FIELD];
+    snprintf(path, sizeof path, "%s/history.csv", trial->folder);
+    FILE *file = fopen(path, "r");
+    size_t used = 0, column = 0, row = 0, *judge_of = NULL, columns = 0;
+    for (int c; file != NULL && (c = getc(file)) != EOF;) {
+        if (c != ',' && c != '\n') {
+            if (used + 1 < FIELD) field[used++] = (char)c;
+            continue;
+        }
+        field[used] = '\0';
+        used = 0;
+        if (row == 0) {
+            size_t *more = realloc(judge_of, (columns + 1) * sizeof *more);
+            if (more == NULL) break;
+            judge_of = more;
+            judge_of[columns] = SIZE_MAX;
+            for (size_t k = 0; k < trade->judge_count; k++)
+                if (strcmp(trade->judges[k].name, field) == 0) judge_of[columns] = k;
+            columns++;
+        } else if (column < columns && judge_of[column] != SIZE_MAX) {
+            trial->values[judge_of[column]] = strtod(field, NULL);
+            trial->peaks[judge_of[column]] = fmax(trial->peaks[judge_of[column]], fabs(trial->values[judge_of[column]]));
+        }
+        column = c == '\n' ? 0 : column + 1;
+        row += c == '\n';
+    }
+    if (file != NULL) fclose(file);
+    free(judge_of);
+}
+
+/* ---- references of a scene without expects ----------------------------------------------------------------------------------------------- */
+
+static ab_trial *at(const ab_trade *trade, const size_t rung[AB_TRADE_LADDERS]) {
+    size_t place = 0;
+    for (size_t k = 0; k < trade->spec->ladder_count; k++) place = place * trade->spec->ladders[k].value_count + rung[k];
+    return trade->trials[place].state == AB_TRIAL_DONE ? &trade->trials[place] : NULL;
+}
+
+static ab_trial *finest(const ab_trade *trade) {
+    ab_trial *best = NULL;
+    size_t most = 0;
+    for (size_t i = 0; i < trade->count; i++) {
+        size_t height = 1;
+        for (size_t k = 0; k < trade->spec->ladder_count; k++) height += trade->trials[i].rung[k];
+        if (trade->trials[i].state == AB_TRIAL_DONE && height >= most) most = height, best = &trade->trials[i];
+    }
+    return best;
+}
+
+/* Three runs that differ on one ladder alone, by a constant factor: the limit that their values tend to (Richardson 1911, with the order they show;
+ * Roache 1998). False where they do not tend to one: not monotone, or an order out of 0.5 to 6. */
+static bool extrapolate(double coarse, double middle, double fine, double factor, double *limit) {
+    const double ratio = (coarse - middle) / (middle - fine);
+    if (!(ratio > 0) || !isfinite(ratio)) return false;
+    const double order = log(ratio) / log(factor);
+    if (!(order > 0.5 && order < 6)) return false;
+    *limit = fine + (fine - middle) / (ratio - 1);
+    return true;
+}
+
+static void find_references(ab_trade *trade) {
+    ab_trial *best = finest(trade), *three[3] = {NULL, NULL, best};
+    if (best == NULL) return;
+    const ab_ladder *along = NULL;
+    double factor = 0;
+    for (size_t k = 0; k < trade->spec->ladder_count && along == NULL; k++) {
+        const ab_ladder *ladder = &trade->spec->ladders[k];
+        size_t rung[AB_TRADE_LADDERS];
+        memcpy(rung, best->rung, sizeof rung);
+        if (best->rung[k] < 2) continue;
+        double value[3];
+        bool number = true;
+        for (size_t i = 0; i < 3; i++) {
+            char *end;
+            rung[k] = best->rung[k] - 2 + i;
+            three[i] = at(trade, rung);
+            value[i] = strtod(ladder->values[rung[k]], &end);
+            number = number && *end == '\0' && value[i] > 0 && three[i] != NULL;
+        }
+        if (!number || fabs(log(value[1] / value[0]) - log(value[2] / value[1])) > 1e-6) continue;
+        factor = fmax(value[1] / value[0], value[0] / value[1]);
+        if (factor > 1) along = ladder;
+    }
+    char settings[160];
+    ab_trade_settings(trade, best, settings, sizeof settings);
+    size_t limits = 0;
+    for (size_t k = 0; k < trade->judge_count; k++) {
+        ab_judge *judge = &trade->judges[k];
+        judge->reference = best->values[k];
+        if (along != NULL && extrapolate(three[0]->values[k], three[1]->values[k], three[2]->values[k], factor, &judge->reference))
+            limits++;
+        const double size = best->peaks[k]; /* not that of the last value, which may well be next to 0 */
+        for (size_t i = 0; i < trade->count; i++)
+            if (trade->trials[i].state == AB_TRIAL_DONE)
+                trade->trials[i].errors[k] = size > 0 ? fabs(trade->trials[i].values[k] - judge->reference) / size : 0;
+        if (judge->reference == best->values[k]) best->errors[k] = NAN; /* it is its own measure */
+    }
+    if (along != NULL && limits > 0)
+        snprintf(trade->reference, sizeof trade->reference,
+                 "errors are against the limit that %.100s tends to (%zu of %zu monitors), else against the finest run, %s", along->name,
+                 limits, trade->judge_count, settings);
+    else
+        snprintf(trade->reference, sizeof trade->reference, "errors are against the finest run, %s", settings);
+}
+
+/* ---- verdicts ------------------------------------------------------------------------------------------------------------------------------ */
+
+static void find_front(ab_trade *trade) {
+    for (size_t i = 0; i < trade->count; i++) {
+        ab_trial *trial = &trade->trials[i];
+        trial->front = trial->state == AB_TRIAL_DONE && isfinite(trial->error);
+        for (size_t k = 0; k < trade->count && trial->front; k++) {
+            const ab_trial *other = &trade->trials[k];
+            if (k == i || other->state != AB_TRIAL_DONE || !isfinite(other->error)) continue;
+            const bool no_worse = other->error <= trial->error && other->cpu <= trial->cpu;
+            if (no_worse && (other->error < trial->error || other->cpu < trial->cpu || k < i)) trial->front = false;
+        }
+    }
+}
+
+ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *report) {
+    AB_TRY(choose_judges(trade, scene, report));
+    const bool monitors = trade->judges[0].monitor;
+    for (size_t i = 0; i < trade->count; i++) {
+        ab_trial *trial = &trade->trials[i];
+        if (trial->state != AB_TRIAL_DONE) continue;
+        read_summary(trade, trial, report);
+        if (monitors && trial->state == AB_TRIAL_DONE) read_history(trade, trial);
+    }
+    if (monitors) find_references(trade);
+    for (size_t i = 0; i < trade->count; i++) {
+        ab_trial *trial = &trade->trials[i];
+        trial->error = trial->state == AB_TRIAL_DONE ? 0 : NAN;
+        for (size_t k = 0; k < trade->judge_count; k++)
+            trial->error = trial->error >= trial->errors[k] ? trial->error : trial->errors[k]; /* NaN stays: not known */
+    }
+    find_front(trade);
+    return AB_OK;
+}
+
+size_t ab_trade_cheapest(const ab_trade *trade, double tolerance) {
+    size_t best = SIZE_MAX;
+    for (size_t i = 0; i < trade->count; i++)
+        if (trade->trials[i].state == AB_TRIAL_DONE && trade->trials[i].error <= tolerance &&
+            (best == SIZE_MAX || trade->trials[i].cpu < trade->trials[best].cpu))
+            best = i;
+    return best;
+}
+
+size_t ab_trade_most_accurate(const ab_trade *trade, double seconds) {
+    size_t best = SIZE_MAX;
+    for (size_t i = 0; i < trade->count; i++)
+        if (trade->trials[i].state == AB_TRIAL_DONE && trade->trials[i].cpu <= seconds && isfinite(trade->trials[i].error) &&
+            (best == SIZE_MAX || trade->trials[i].error < trade->trials[best].error))
+            best = i;
+    return best;
+}

@@ -1,0 +1,80 @@
+#!/bin/bash
+# cost: 12
+# abut trade: the front and the sentence against what the runs themselves say, runs that are there already, failures, limits, signals, bad input. test_trade.sh BUILD
+set -u
+build=$(realpath "${1:?the build folder}")
+here=$(cd "$(dirname "$0")" && pwd)
+cd "${ABUT_SCRATCH:-$(mktemp -d)}" || exit 1
+missed=0
+must() { # what, then a command that must succeed
+    local what=$1
+    shift
+    if "$@"; then echo "passed  $what"; else echo "MISSED  $what" && missed=$((missed + 1)); fi
+}
+says() { # status, pattern, command ...: it ends so, and says so
+    local status=$1 pattern=$2
+    shift 2
+    "$@" >said 2>&1
+    local got=$?
+    [ $got -eq "$status" ] && grep -Eq "$pattern" said || { echo "        exit $got"; sed 's/^/        /' said; return 1; }
+}
+bar=$here/bar_1.yaml
+basis='bodies.bar.basis=linear,gimp,bspline2'
+must "a ladder of meshes and bases" says 0 "cheapest within an error of 0.01 is constants.cells=" "$build/abut" trade "$bar" --vary constants.cells=12,25,50 --vary "$basis" -o bar --write best.yaml --tolerance 1e-2
+must "the files it leaves" python3 - <<'PYTHON'
+import csv, json, math
+import xml.dom.minidom
+trade = json.load(open("bar/trade.json"))
+runs = trade["runs"]
+assert len(runs) == 9 and all(r["outcome"] == "done" for r in runs)
+for r in runs:
+    summary = json.load(open(r["folder"] + "/summary.json"))
+    errors = {e["name"]: abs(e["error"]) for e in summary["expects"]}
+    assert r["errors"] == errors and r["error"] == max(errors.values()), r
+    assert r["remainder"] == summary["ledger"]["remainder_relative"] and 0 < r["cpu_seconds"] and r["peak_bytes"] > 1e6
+    beaten = any(o["error"] <= r["error"] and o["cpu_seconds"] <= r["cpu_seconds"] and (o["error"], o["cpu_seconds"]) != (r["error"], r["cpu_seconds"]) for o in runs)
+    assert r["front"] == (not beaten), r
+good = [r for r in runs if r["error"] <= 1e-2]
+assert trade["cheapest"] == min(good, key=lambda r: r["cpu_seconds"])["settings"]
+assert trade["most_accurate"] == min((r for r in runs if r["cpu_seconds"] <= 10), key=lambda r: r["error"])["settings"]
+rows = list(csv.DictReader(open("bar/trade.csv")))
+assert [float(row["error"]) for row in rows] == [r["error"] for r in runs]
+picture = xml.dom.minidom.parse("bar/trade.svg")
+assert len(picture.getElementsByTagName("circle")) == 9
+PYTHON
+must "the scene it writes runs and is as good" "$build/abut" run best.yaml --quiet -o best
+must "errors of that scene" python3 -c "
+import json
+assert max(abs(e['error']) for e in json.load(open('best/summary.json'))['expects']) <= 1e-2"
+must "runs that are there are not run again" says 0 "9 of 9 .*done before" "$build/abut" trade "$bar" --vary constants.cells=12,25,50 --vary "$basis" -o bar
+sed 's/v0: 1e-4/v0: 2e-4/' "$bar" >other.yaml
+must "runs of another scene are" bash -c "'$build/abut' trade other.yaml --vary constants.cells=12 -o bar 2>&1 | grep -q '1 of 1.*done, '"
+
+cat >plain.yaml <<'SCENE' # without expects: the last values of the monitors tend to a limit
+abut: 1
+space: plane-strain
+constants: {cells: 10, h: 25/cells, w: 10*pi/50}
+time: {end: 0.4*pi/w, cfl: 0.4}
+grid: {from: [0, 0], to: [25 + 4*h, 2*h], cell: h, sides: {left: roller, bottom: roller, top: roller}}
+materials: {m: {model: linear-elastic, E: 100, nu: 0, density: 1}}
+bodies: {bar: {method: material-points, material: m, shape: {box: [[0, 0], [25, 2*h]]}, velocity: ["1e-4*sin(pi*x/50)", 0], update: usf}}
+monitors: [{name: tip, body: bar, value: displacement.x, over: max}, {name: v, body: bar, value: velocity.x}]
+trade:
+  vary: [{set: constants.cells, values: [10, 20, 40]}]
+SCENE
+must "a scene without expects" says 0 "limit that constants.cells tends to" "$build/abut" trade plain.yaml -o plain
+must "its errors fall by the order of the method" python3 -c "
+import json, math
+e = [r['errors']['tip'] for r in json.load(open('plain/trade.json'))['runs']]
+assert 2 < e[0] / e[1] < 8 and 2 < e[1] / e[2] < 8, e"
+must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" trade "$bar" --vary bodies.bar.transfer=flip,tpic --vary bodies.bar.update=musl,usl --set constants.cells=12 -o refused
+must "the limit stops dear runs" says 0 "cheaper run is over the limit" "$build/abut" trade "$bar" --vary constants.cells=12,1600,3200 --set trade.limit=0.7 -o limit
+must "a signal leaves what is done" says 124 "1 of 2 runs have no answer" timeout -s INT 3 "$build/abut" trade "$bar" --vary constants.cells=12,1600 -o signal
+must "and it goes on from there" says 0 "done before" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o signal
+must "an unknown constant" says 2 "did you mean 'cells'" "$build/abut" trade "$bar" --vary constants.cels=1,2 -o never
+must "values that none goes" says 2 "no value of 'bodies.bar.basis' is accepted" "$build/abut" trade "$bar" --vary bodies.bar.basis=liner,gimpp -o never
+must "nothing to try" says 2 "nothing to try" "$build/abut" trade "$bar" -o never
+must "a ladder with a value twice" says 2 "stands there twice" "$build/abut" trade "$bar" --vary constants.cells=12,12 -o never
+must "too many combinations" says 2 "combinations" "$build/abut" trade "$bar" --vary constants.cells="$(seq -s, 1 60)" --vary constants.n="$(seq -s, 1 60)" --vary constants.L="$(seq -s, 1 60)" -o never
+must "nothing is written where the input is wrong" test ! -e never
+[ $missed -eq 0 ]
