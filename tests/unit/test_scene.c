@@ -143,7 +143,7 @@ static const mistake mistakes[] = {
     {"title: two blocks", "stages: []", "stages is not in this version yet"},
     {"title: two blocks", "boundaries: []", "boundaries is not in this version yet"},
     {"title: two blocks", "checkpoint: {every: 1}", "checkpoint is not in this version yet"},
-    {"title: two blocks", "trade: {}", "trade is not in this version yet"},
+    {"title: two blocks", "trade: {vary: [{set: constants.nothing, values: [1]}]}", "the scene has no constant 'nothing'"},
     {"title: two blocks", "tittle: two blocks", ":2:1: error: unknown key 'tittle' in the scene; did you mean 'title'?"},
     {"abut: 1", "abut: 2", "this program reads version 1"},
     {"abut: 1", "{}", "not YAML"},
