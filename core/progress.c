@@ -114,6 +114,25 @@ void ab_progress_step(ab_progress *p, const ab_state_view *view) {
     show(p, view, clock);
 }
 
+void ab_progress_prepare(void *progress, double part, const char *text) {
+    ab_progress *p = progress;
+    const double clock = now(), within = part > 1 ? 1 : part > 0 ? part : 0;
+    const int tenth = (int)(10 * within + 1e-9);
+    const double since = clock - p->shown;
+    if (p->quiet || (clock - p->started < 1) || (p->terminal ? since < 0.1 : since < 1 || (tenth == p->tenth && since < 10))) return;
+    char bar[24] = "";
+    const int width = p->terminal ? terminal_width(p->stream) - 1 : 200, cells = 10, full = (int)(cells * within);
+    for (int k = 0; k < cells && p->terminal; k++) bar[k] = k < full ? '#' : '.';
+    if (p->terminal)
+        fprintf(p->stream, "\r%3d %% %s  %.*s\033[K", (int)(100 * within), bar, width > 18 ? width - 18 : 0, text);
+    else
+        fprintf(p->stream, "%3d %%  %s\n", (int)(100 * within), text);
+    fflush(p->stream);
+    p->drawn = true;
+    p->shown = clock;
+    p->tenth = tenth;
+}
+
 void ab_progress_end(ab_progress *p) {
     if (!p->quiet && p->terminal && p->drawn) {
         fputs("\r\033[K", p->stream);

@@ -21,6 +21,8 @@ typedef struct ab_progress { /* filled by begin; no part of it is for others */
 void ab_progress_begin(ab_progress *progress, FILE *stream, bool quiet, double time_end, size_t work);
 /* After every step; costs a comparison in most of them. At most ten redrawings a second. */
 void ab_progress_step(ab_progress *progress, const ab_state_view *view);
+/* Of what comes before the run, such as filling a body: an ab_report_watcher, `progress` as its data. Nothing in the first second. */
+void ab_progress_prepare(void *progress, double share, const char *text);
 /* Takes the bar away. */
 void ab_progress_end(ab_progress *progress);
 /* The line as shown (share, t, remaining time, million point- and element-steps per second, remainder, step, dt and what binds it), no longer than `width` characters; for a terminal with a bar. */

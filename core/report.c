@@ -25,6 +25,8 @@ struct ab_report {
     size_t file_count;
     size_t errors, warnings, dropped;
     bool sorted;
+    ab_report_watcher watcher; /* NULL: nobody */
+    void *watcher_data;
 };
 
 ab_report *ab_report_create(void) {
@@ -100,6 +102,22 @@ static void add(ab_report *report, ab_mark mark, const char *kind, size_t *count
     pthread_mutex_lock(&report->lock);
     if (keep(report, mark, counter == &report->errors, text)) ++*counter;
     pthread_mutex_unlock(&report->lock);
+}
+
+void ab_report_watch(ab_report *report, ab_report_watcher watcher, void *data) {
+    if (report == NULL) return;
+    report->watcher = watcher;
+    report->watcher_data = data;
+}
+
+void ab_report_progress(ab_report *report, double share, const char *format, ...) {
+    if (report == NULL || report->watcher == NULL) return;
+    char text[500];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    report->watcher(report->watcher_data, share, text);
 }
 
 ab_status ab_report_error(ab_report *report, ab_mark mark, const char *format, ...) {

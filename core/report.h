@@ -30,6 +30,11 @@ ab_status ab_report_error(ab_report *report, ab_mark mark, const char *format, .
 ab_status ab_report_failure(ab_report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ab_report_warning(ab_report *report, ab_mark mark, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/* How far a long preparation is (share: 0 .. 1), for whoever watches; nothing is kept. Not from several threads at once. */
+typedef void (*ab_report_watcher)(void *data, double share, const char *text);
+void ab_report_watch(ab_report *report, ab_report_watcher watcher, void *data); /* NULL: nobody */
+void ab_report_progress(ab_report *report, double share, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
 size_t ab_report_errors(const ab_report *report); /* errors and failures so far */
 size_t ab_report_warnings(const ab_report *report);
 const char *ab_report_text(const ab_report *report, size_t item); /* item-th line, in order of place; NULL past the end */

@@ -26,10 +26,12 @@ typedef struct ab_shape_spec {
     double center[2], radius, inner; /* disc, ring (inner radius) */
     double (*vertices)[2];           /* polygon: either way round; stored counter-clockwise */
     size_t count;                    /* vertices, or members */
-    struct ab_shape_spec *members;   /* union */
+    struct ab_shape_spec *holes;     /* polygon: polygons inside of it */
+    size_t hole_count;
+    struct ab_shape_spec *members; /* union */
 } ab_shape_spec;
 
-typedef enum ab_fill_rule { AB_FILL_REGULAR = 0, AB_FILL_GAUSS } ab_fill_rule;
+typedef enum ab_fill_rule { AB_FILL_REGULAR = 0, AB_FILL_GAUSS, AB_FILL_CVT } ab_fill_rule;
 
 /* where: a set of places on or in a body's initial outline */
 typedef struct ab_where {
@@ -88,8 +90,11 @@ typedef struct ab_body_spec {
     ab_shape_spec shape;
     ab_fill_rule fill;
     int per_cell;
-    char *basis;     /* "linear" | "gimp" */
-    bool contiguous; /* domains of gimp follow the stretch */
+    long points, seed;     /* cvt: points 0: by per_cell */
+    double fill_tolerance; /* cvt */
+    long fill_rounds;      /* cvt: at most */
+    char *basis;           /* "linear" | "gimp" */
+    bool contiguous;       /* domains of gimp follow the stretch */
     ab_transfer transfer;
     ab_f_bar f_bar;        /* material-points; elements have mesh.f_bar */
     int order;             /* AB_TRANSFER_XPIC, _FMPM: m */

@@ -19,18 +19,44 @@ static void take_material(ab_scene_reader *r, const ab_node *node, const char *w
                         ab_suggest_tail(name, names, scene->material_count, tail, sizeof tail));
 }
 
+/* A key of another rule is refused; where --set has chosen the rule, it is left out with a warning. */
+static void leave_out(ab_scene_reader *r, const ab_node *node, const ab_node *rule_node, const char *where, const char *name,
+                      const char *whose, const char *rule) {
+    if (rule_node != NULL && rule_node->override_ && !node->override_)
+        ab_report_warning(r->base.report, node->mark, "%s.%s belongs to rule %s, not to %s, which --set chose; it is left out", where, name,
+                          whose, rule);
+    else
+        ab_report_error(r->base.report, node->mark, "%s.%s belongs to rule %s; with rule %s write per_cell, or leave it out", where, name,
+                        whose, rule);
+}
+
 static void take_fill(ab_scene_reader *r, const ab_node *node, const char *where, ab_body_spec *body) {
     const ab_node *v[FILL_KEYS] = {NULL};
     char path[AB_WHERE];
     ab_where_join(path, where, "fill");
     body->mark_fill = node == NULL ? body->mark : node->mark;
     if (node != NULL && !ab_section_open(&r->base, &ab_section_fill, node, path, v)) return;
+    const ab_key *key = ab_section_fill.keys;
     char *rule = NULL;
     long per_cell = 4;
-    if (ab_read_word(&r->base, &ab_section_fill.keys[FILL_RULE], v[FILL_RULE], path, &rule))
-        body->fill = strcmp(rule, "gauss") == 0 ? AB_FILL_GAUSS : AB_FILL_REGULAR;
-    ab_read_integer(&r->base, &ab_section_fill.keys[FILL_PER_CELL], v[FILL_PER_CELL], path, &per_cell);
+    const bool known = ab_read_word(&r->base, &key[FILL_RULE], v[FILL_RULE], path, &rule);
+    if (known) body->fill = strcmp(rule, "gauss") == 0 ? AB_FILL_GAUSS : strcmp(rule, "cvt") == 0 ? AB_FILL_CVT : AB_FILL_REGULAR;
+    ab_read_integer(&r->base, &key[FILL_PER_CELL], v[FILL_PER_CELL], path, &per_cell);
     body->per_cell = (int)per_cell;
+    ab_read_integer(&r->base, &key[FILL_POINTS], v[FILL_POINTS], path, &body->points);
+    ab_read_integer(&r->base, &key[FILL_SEED], v[FILL_SEED], path, &body->seed);
+    ab_read_number(&r->base, &key[FILL_TOLERANCE], v[FILL_TOLERANCE], path, &body->fill_tolerance);
+    ab_read_integer(&r->base, &key[FILL_ITERATIONS], v[FILL_ITERATIONS], path, &body->fill_rounds);
+    if (!known) return;
+    for (int k = FILL_POINTS; k <= FILL_ITERATIONS && body->fill != AB_FILL_CVT; k++)
+        if (v[k] != NULL) leave_out(r, v[k], v[FILL_RULE], path, key[k].name, "cvt", rule);
+    if (v[FILL_POINTS] != NULL && v[FILL_PER_CELL] != NULL && body->fill == AB_FILL_CVT) {
+        if (v[FILL_POINTS]->override_ == v[FILL_PER_CELL]->override_)
+            ab_report_error(r->base.report, v[FILL_POINTS]->mark,
+                            "%s has both points and per_cell; keep one: points are all of the body, per_cell those of a cell", path);
+        else if (v[FILL_PER_CELL]->override_) /* what --set says takes the place of the other */
+            body->points = 0;
+    }
 }
 
 static void take_basis(ab_scene_reader *r, const ab_node *node, const char *where, ab_body_spec *body) {

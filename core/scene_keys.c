@@ -204,10 +204,13 @@ static const ab_key shape[] = {
     [SHAPE_RING] = {"ring", AB_KEY_SECTION, .unit = "m", .help = "{center: [x, y], radius: r, inner: r}"},
     [SHAPE_POLYGON] = {"polygon", AB_KEY_SECTION, .unit = "m",
                        .help = "[[x, y], ...], three corners or more, either way round, not crossing itself"},
+    [SHAPE_HOLES] = {"holes", AB_KEY_SECTION, .unit = "m",
+                     .help = "beside polygon: list of polygons inside of it that are left empty, [[[x, y], ...], ...]"},
     [SHAPE_UNION] = {"union", AB_KEY_SECTION, .help = "list of shapes taken together"},
     [SHAPE_MESH] = {"mesh", AB_KEY_LATER, .help = "write the outline as a polygon"},
 };
-SECTION(shape, "bodies.NAME.shape", shape, NULL, "One of these.", "shape: {disc: {center: [1, 1], radius: \"50 cm\"}}\n");
+SECTION(shape, "bodies.NAME.shape", shape, NULL, "One of these; `holes` only beside `polygon`.",
+        "shape: {disc: {center: [1, 1], radius: \"50 cm\"}}\n");
 
 #define CENTER                                                                                                                             \
     { "center", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "middle" }
@@ -222,14 +225,23 @@ static const ab_key ring[] = {
 SECTION(ring, "ring", ring, NULL, "A circle with a round hole.", NULL);
 
 static const ab_key fill[] = {
-    [FILL_RULE] = {"rule", AB_KEY_WORD, .words = "regular|gauss|!cvt", .initial = "regular",
-                   .help = "regular: a lattice fitted to the outline; gauss: the Gauss points of each cell"},
+    [FILL_RULE] =
+        {"rule", AB_KEY_WORD, .words = "regular|gauss|cvt", .initial = "regular",
+         .help =
+             "regular: a lattice fitted to the outline; gauss: the Gauss points of each cell; cvt: points at the centroids of their own "
+             "Voronoi cells (Lloyd's iteration), for outlines that no lattice fits"},
     [FILL_PER_CELL] = {"per_cell", AB_KEY_INTEGER, .unit = "1", .initial = "4", .flags = AB_KEY_RANGE, .min = 1, .max = 10000,
                        .help = "points wanted in a full cell"},
-    [FILL_POINTS] = {"points", AB_KEY_LATER, .help = "it belongs to rule cvt; use rule regular or gauss with per_cell"},
-    [FILL_SEED] = {"seed", AB_KEY_LATER, .help = "it belongs to rule cvt; use rule regular or gauss with per_cell"},
+    [FILL_POINTS] = {"points", AB_KEY_INTEGER, .unit = "1", .flags = AB_KEY_RANGE, .min = 1, .max = 1e6,
+                     .help = "how many points in all, in place of per_cell; rule cvt"},
+    [FILL_SEED] = {"seed", AB_KEY_INTEGER, .unit = "1", .initial = "1", .flags = AB_KEY_RANGE, .min = 0, .max = 1e9,
+                   .help = "each number gives other points, the same one always the same; rule cvt"},
+    [FILL_TOLERANCE] = {"tolerance", AB_KEY_NUMBER, .unit = "1", .initial = "1e-3", .flags = AB_KEY_RANGE, .min = 1e-9, .max = 0.5,
+                        .help = "the iteration ends when no point moves by more than this part of the mean distance of points; rule cvt"},
+    [FILL_ITERATIONS] = {"iterations", AB_KEY_INTEGER, .unit = "1", .initial = "2000", .flags = AB_KEY_RANGE, .min = 1, .max = 1e6,
+                         .help = "rounds at most; a warning says where they did not do; rule cvt"},
 };
-SECTION(fill, "bodies.NAME.fill", fill, NULL, "How material points are placed.", "fill: {rule: regular, per_cell: 9}\n");
+SECTION(fill, "bodies.NAME.fill", fill, NULL, "How material points are placed.", "fill: {rule: cvt, points: 500, seed: 1}\n");
 
 static const ab_key basis[] = {
     [BASIS_GIMP] = {"gimp", AB_KEY_WORD, .words = "contiguous|fixed", .flags = AB_KEY_REQUIRED,

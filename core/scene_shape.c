@@ -103,10 +103,9 @@ static bool crosses_itself(const ab_shape_spec *shape, size_t *first, size_t *se
     return false;
 }
 
-static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *where, ab_shape_spec *shape) {
+/* Corners of a polygon or hole; path: its own place, where: that of the list it stands in. */
+static bool take_corners(ab_scene_reader *r, const ab_node *node, const char *where, const char *path, ab_shape_spec *shape) {
     const ab_key corner = {"polygon", AB_KEY_POINT, .unit = "m", .help = ""};
-    char path[AB_WHERE];
-    ab_where_join(path, where, "polygon");
     if (node->kind != AB_NODE_LIST || node->count < 3)
         return refuse(r, node->mark, path, "needs a list of three corners or more [[x, y], [x, y], [x, y], ...]");
     if (node->count > MOST_CORNERS) {
@@ -150,6 +149,69 @@ static bool take_polygon(ab_scene_reader *r, const ab_node *node, const char *wh
     return true;
 }
 
+/* The other polygons may neither meet nor hold one of this one's corners; `outer`: they must hold them all. */
+static bool apart(ab_scene_reader *r, ab_mark mark, const char *path, size_t number, const ab_shape_spec *hole, const ab_shape_spec *other,
+                  bool outer, size_t other_number) {
+    bool inside = false;
+    const double *p = hole->vertices[0];
+    for (size_t j = 0; j < other->count; j++) {
+        const double *c = other->vertices[j], *d = other->vertices[(j + 1) % other->count];
+        for (size_t i = 0; i < hole->count; i++)
+            if (meet(hole->vertices[i], hole->vertices[(i + 1) % hole->count], c, d)) {
+                if (outer)
+                    ab_report_error(r->base.report, mark,
+                                    "%s[%zu]: its piece from corner %zu meets the outline's piece from corner %zu; a hole must leave some "
+                                    "body round it",
+                                    path, number, i, j);
+                else
+                    ab_report_error(
+                        r->base.report, mark,
+                        "%s[%zu]: its piece from corner %zu meets the piece from corner %zu of %s[%zu]; draw holes that meet as one", path,
+                        number, i, j, path, other_number);
+                return false;
+            }
+        if ((c[1] <= p[1]) != (d[1] <= p[1]) && c[0] + (p[1] - c[1]) / (d[1] - c[1]) * (d[0] - c[0]) > p[0]) inside = !inside;
+    }
+    if (inside == outer) return true;
+    if (outer)
+        ab_report_error(r->base.report, mark, "%s[%zu] lies outside of the polygon, and leaves nothing empty; leave it out", path, number);
+    else
+        ab_report_error(r->base.report, mark, "%s[%zu] lies inside of %s[%zu], where nothing is left to cut; leave it out", path, number,
+                        path, other_number);
+    return false;
+}
+
+static bool take_holes(ab_scene_reader *r, const ab_node *node, const char *where, ab_shape_spec *shape) {
+    char path[AB_WHERE];
+    ab_where_join(path, where, "holes");
+    if (node->kind != AB_NODE_LIST || node->count == 0)
+        return refuse(r, node->mark, path, "must be a list of polygons [[[x, y], [x, y], [x, y], ...], ...]");
+    if (node->count > MOST_MEMBERS) return refuse(r, node->mark, path, "has more than 1000 polygons");
+    shape->holes = ab_reader_take(&r->base, node->count, sizeof *shape->holes);
+    if (shape->holes == NULL) return false;
+    bool good = true;
+    for (size_t i = 0; i < node->count; i++) {
+        char name[AB_WHERE];
+        snprintf(name, sizeof name, "%.150s[%zu]", path, i);
+        shape->holes[i].kind = AB_SHAPE_POLYGON;
+        shape->holes[i].mark = node->items[i]->mark;
+        good = take_corners(r, node->items[i], name, name, &shape->holes[i]) && good;
+    }
+    for (size_t i = 0; i < node->count && good; i++) {
+        good = apart(r, node->items[i]->mark, path, i, &shape->holes[i], shape, true, 0);
+        for (size_t j = 0; j < node->count && good; j++)
+            if (j != i) good = apart(r, node->items[i]->mark, path, i, &shape->holes[i], &shape->holes[j], false, j);
+    }
+    shape->hole_count = good ? node->count : 0;
+    return good;
+}
+
+static bool take_polygon(ab_scene_reader *r, const ab_node *node, const ab_node *holes, const char *where, ab_shape_spec *shape) {
+    char path[AB_WHERE];
+    const bool good = take_corners(r, node, where, ab_where_join(path, where, "polygon"), shape);
+    return good && (holes == NULL || take_holes(r, holes, where, shape));
+}
+
 static bool take_union(ab_scene_reader *r, const ab_node *node, const char *where, ab_shape_spec *shape) {
     char path[AB_WHERE];
     ab_where_join(path, where, "union");
@@ -172,7 +234,9 @@ bool ab_scene_take_shape(ab_scene_reader *r, const ab_node *node, const char *wh
     shape->mark = node->mark;
     if (!ab_section_open(&r->base, &ab_section_shape, node, where, v)) return false;
     size_t given = 0;
-    for (int k = 0; k < SHAPE_KEYS; k++) given += v[k] != NULL;
+    for (int k = 0; k < SHAPE_KEYS; k++) given += v[k] != NULL && k != SHAPE_HOLES;
+    if (v[SHAPE_HOLES] != NULL && v[SHAPE_POLYGON] == NULL)
+        return refuse(r, v[SHAPE_HOLES]->mark, where, "holes stand beside a polygon; a disc with a round hole is a ring");
     if (given != 1) {
         if (node->count == 0 || given > 1)
             refuse(r, node->mark, where, "one of box, disc, ring, polygon and union is needed; several shapes are {union: [{...}, {...}]}");
@@ -189,7 +253,7 @@ bool ab_scene_take_shape(ab_scene_reader *r, const ab_node *node, const char *wh
         good = take_round(r, &ab_section_ring, v[SHAPE_RING], where, shape);
         shape->kind = AB_SHAPE_RING;
     } else if (v[SHAPE_POLYGON] != NULL) {
-        good = take_polygon(r, v[SHAPE_POLYGON], where, shape);
+        good = take_polygon(r, v[SHAPE_POLYGON], v[SHAPE_HOLES], where, shape);
         shape->kind = AB_SHAPE_POLYGON;
     } else if (v[SHAPE_UNION] != NULL) {
         good = take_union(r, v[SHAPE_UNION], where, shape);

@@ -67,6 +67,9 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     ab_status status = s->domains && s->energy && s->energy_start && s->motion
                            ? AB_OK
                            : ab_report_failure(report, "no memory for %zu bodies", s->body_count);
+    ab_progress progress;
+    ab_progress_begin(&progress, stderr, options->quiet, 1.0, 1);
+    ab_report_watch(report, ab_progress_prepare, &progress);
     for (size_t b = 0; status == AB_OK && b < s->body_count; ++b) {
         const ab_body_spec *spec = scene->bodies + b;
         const ab_method *method = NULL;
@@ -77,6 +80,8 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
         else
             status = method->create(scene, b, options->threads, s->domains + b, report);
     }
+    ab_report_watch(report, NULL, NULL);
+    ab_progress_end(&progress);
     if (status == AB_OK && scene->contact_count) status = options->interact(scene, s->domains, &s->interaction, report);
     if (status != AB_OK) {
         ab_schedule_destroy(s);

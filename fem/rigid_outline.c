@@ -191,7 +191,14 @@ ab_status rigid_outline_create(const ab_scene *scene, const ab_body_spec *spec, 
         const double corner[4][2] = {{s->low[0], s->low[1]}, {s->high[0], s->low[1]}, {s->high[0], s->high[1]}, {s->low[0], s->high[1]}};
         return of_corners(spec, corner, 4, o, report);
     }
-    case AB_SHAPE_POLYGON: return of_corners(spec, (const double(*)[2])s->vertices, s->count, o, report);
+    case AB_SHAPE_POLYGON:
+        if (s->hole_count > 0)
+            return ab_report_error(
+                report, s->mark,
+                "body '%s': a rigid body cannot have a polygon with holes; write a mesh or a ring, or leave the holes out and give "
+                "motion.mass and motion.inertia",
+                spec->name);
+        return of_corners(spec, (const double(*)[2])s->vertices, s->count, o, report);
     case AB_SHAPE_DISC: return of_circles(spec, s->radius, 0.0, o, report);
     case AB_SHAPE_RING: return of_circles(spec, s->radius, s->inner, o, report);
     default:

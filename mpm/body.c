@@ -14,10 +14,14 @@ enum { WAVE_SPEED_EVERY = 16 };
 /* A thread is worth its waking up from about this many points on. */
 enum { POINTS_PER_THREAD = 4000 };
 
-/* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen). */
+/* dt c/h at which the scheme is neutrally stable, worst over the places of points in their cells (frozen). Points that stand as they come (cvt, in a mesh) are now
+ * closer, now farther apart than their number says: the least of the limits around it. */
 static double stable_courant(const mpm_body *body) {
-    const double per_direction = ceil(sqrt(body->domain.spec->per_cell));
-    return body->kernel->courant[(int)fmin(per_direction, 8.0) - 1];
+    const ab_body_spec *spec = body->domain.spec;
+    if (spec->fill != AB_FILL_CVT) return body->kernel->courant[(int)fmin(ceil(sqrt(spec->per_cell)), 8.0) - 1];
+    const double area = body->motion.mass / body->material->density;
+    const int middle = (int)fmin(fmax(ceil(body->h * sqrt((double)body->born / area)), 2.0), 7.0); /* points per direction */
+    return fmin(body->kernel->courant[middle - 1], fmin(body->kernel->courant[middle - 2], body->kernel->courant[middle]));
 }
 
 static void destroy(ab_domain *domain) {
@@ -403,7 +407,15 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
     }
     mpm_rows_plan(body);
     ab_fill *fill = NULL;
-    ab_status status = ab_fill_create(&spec->shape, spec->fill, spec->per_cell, body->h, body->origin, spec->name, &fill, report);
+    const ab_fill_request request = {.rule = spec->fill,
+                                     .per_cell = spec->per_cell,
+                                     .cell = body->h,
+                                     .points = (size_t)spec->points,
+                                     .seed = (uint64_t)spec->seed,
+                                     .tolerance = spec->fill_tolerance,
+                                     .iterations = (int)spec->fill_rounds,
+                                     .threads = threads};
+    ab_status status = ab_fill_make(&spec->shape, &request, spec->name, &fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
     if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */

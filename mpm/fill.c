@@ -1,5 +1,6 @@
 /* fill.c: the door of the fill: checks the request, hands each shape to its filler, keeps the growing lists; and answers `where`. */
 #define _POSIX_C_SOURCE 200809L
+#include "mpm/fill_cvt.h"
 #include "mpm/fill_union.h"
 
 #include <math.h>
@@ -55,28 +56,46 @@ ab_status ab_fill_shape(ab_filler *filler, const ab_shape_spec *shape) {
     return AB_BAD_INPUT;
 }
 
-ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
-                         ab_fill **fill, ab_report *report) {
-    (void)origin; /* the lattice follows the outline, wherever the grid stands */
+ab_status ab_fill_make(const ab_shape_spec *shape, const ab_fill_request *request, const char *body, ab_fill **fill, ab_report *report) {
+    const int per_cell = request->per_cell;
+    const double cell = request->cell;
     *fill = NULL;
     if (per_cell < 1)
         return ab_report_error(report, shape->mark, "body '%s': %d points per cell; there must be at least 1", body, per_cell);
     if (!(cell > 0) || !isfinite(cell))
         return ab_report_error(report, shape->mark, "body '%s': cells of %g m; the size must be positive", body, cell);
-    ab_filler filler = {.rule = rule, .per_cell = per_cell, .cell = cell, .spacing = cell / sqrt(per_cell), .body = body, .report = report};
+    ab_filler filler = {.rule = request->rule,
+                        .per_cell = per_cell,
+                        .cell = cell,
+                        .spacing = cell / sqrt(per_cell),
+                        .points = request->points,
+                        .seed = request->seed,
+                        .tolerance = request->tolerance > 0 ? request->tolerance : 1e-3,
+                        .iterations = request->iterations > 0 ? request->iterations : 1000,
+                        .threads = request->threads,
+                        .body = body,
+                        .report = report};
     filler.fill = calloc(1, sizeof *filler.fill);
     if (!filler.fill) return ab_report_failure(report, "body '%s': no memory to fill it", body);
     for (int k = 0; k < 2; k++) {
         filler.fill->low[k] = INFINITY;
         filler.fill->high[k] = -INFINITY;
     }
-    const ab_status status = ab_fill_shape(&filler, shape);
+    ab_status status = ab_fill_check(&filler, shape);
+    if (status == AB_OK) status = request->rule == AB_FILL_CVT ? ab_fill_cvt(&filler, shape) : ab_fill_shape(&filler, shape);
     if (status != AB_OK) {
         ab_fill_destroy(filler.fill);
         return status;
     }
     *fill = filler.fill;
     return AB_OK;
+}
+
+ab_status ab_fill_create(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, double cell, const double origin[2], const char *body,
+                         ab_fill **fill, ab_report *report) {
+    (void)origin; /* the points follow the outline, wherever the grid stands */
+    const ab_fill_request request = {.rule = rule, .per_cell = per_cell, .cell = cell};
+    return ab_fill_make(shape, &request, body, fill, report);
 }
 
 void ab_fill_destroy(ab_fill *fill) {

@@ -24,6 +24,23 @@ typedef struct ab_fill {
     double low[2], high[2]; /* bounding box of the outline */
 } ab_fill;
 
+typedef struct ab_fill_request { /* how to fill; what is 0 and has a default takes it */
+    ab_fill_rule rule;
+    int per_cell;     /* points wanted per cell, any number >= 1 */
+    double cell;      /* m, of the background grid */
+    size_t points;    /* cvt: how many points in all; 0: by per_cell */
+    uint64_t seed;    /* cvt: of the random places that it starts from */
+    double tolerance; /* cvt: the last round moved no point by more than this part of the mean distance of points; default 1e-3 */
+    int iterations;   /* cvt: rounds at most, a warning where they do not do; default 1000 */
+    int threads;      /* cvt: the answer does not depend on it; default 1 */
+} ab_fill_request;
+
+/* Fills a shape by any rule; ab_fill_create says what regular and gauss do.
+ *   cvt  the points are the centroids of their own Voronoi cells (cut by the outline), to the tolerance, from random places (mpm/fill_cvt.c). Volumes are those of the cells,
+ *        extents three times their second moments, so that a square cell has its half side, and stretched where the outline is so that point + half
+ *        size reaches it. Members of a union are one body. Up to 1e6 points. */
+ab_status ab_fill_make(const ab_shape_spec *shape, const ab_fill_request *request, const char *body, ab_fill **fill, ab_report *report);
+
 /* Fills a shape. cell: m, of the background grid; per_cell: points wanted per cell of that size, any number >= 1. The lattice follows the
  * outline, not the grid, so that origin (the grid's corner) does not matter to any rule there is.
  *   regular  box: a lattice whose spacings divide the sides. disc, ring: circles of equal width. polygon: a lattice along its longest edge that stands

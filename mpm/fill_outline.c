@@ -40,8 +40,8 @@ static bool meet(const ab_edge *p, const ab_edge *q, double slack) {
 }
 
 /* Reports edges that touch or cross: sweeps along the axis on which the edges overlap least. */
-static ab_status check_crossings(const ab_outline *outline, const size_t *number, double size, ab_mark mark, const char *body,
-                                 ab_report *report) {
+static ab_status check_crossings(const ab_outline *outline, const size_t *number, const size_t *loop_of, double size, ab_mark mark,
+                                 const char *body, ab_report *report) {
     const size_t n = outline->count;
     span *spans = malloc(n * sizeof *spans);
     if (!spans) return ab_report_failure(report, "body '%s': no memory for a polygon of %zu vertices", body, n);
@@ -68,9 +68,10 @@ static ab_status check_crossings(const ab_outline *outline, const size_t *number
             }
             const ab_edge *p = &outline->edge[e], *q = &outline->edge[f];
             bool wrong;
-            if (f == e + 1 ||
-                (e == 0 && f == n - 1)) { /* neighbours share a vertex; wrong only where the second runs back along the first */
-                const ab_edge *first = f == e + 1 ? p : q, *second = f == e + 1 ? q : p;
+            const bool onwards = f == e + 1, round = loop_of[e] == e && (f + 1 == n || loop_of[f + 1] != e);
+            if (loop_of[e] == loop_of[f] &&
+                (onwards || round)) { /* neighbours share a vertex; wrong only where the second runs back along the first */
+                const ab_edge *first = onwards ? p : q, *second = onwards ? q : p;
                 const double along = (first->to[0] - first->from[0]) * (second->to[0] - second->from[0]) +
                                      (first->to[1] - first->from[1]) * (second->to[1] - second->from[1]);
                 const double across = cross(first->from, first->to, second->to);
@@ -98,52 +99,100 @@ static ab_status check_crossings(const ab_outline *outline, const size_t *number
     return found ? AB_BAD_INPUT : AB_OK;
 }
 
-ab_status ab_outline_create(const ab_shape_spec *shape, ab_outline *outline, const char *body, ab_report *report) {
-    *outline = (ab_outline){0};
+/* Vertices of a polygon or hole: finite, and no two of them in one place. *area: positive where they go round counter-clockwise. */
+static ab_status check_vertices(const ab_shape_spec *shape, const char *what, double size, double *area, const char *body,
+                                ab_report *report) {
     const size_t n = shape->count;
     double(*const vertex)[2] = shape->vertices;
-    if (n < 3) return ab_report_error(report, shape->mark, "body '%s': a polygon of %zu vertices; it needs at least 3", body, n);
-    double size = 0;
-    for (size_t k = 0; k < n; k++) {
-        if (!isfinite(vertex[k][0]) || !isfinite(vertex[k][1]))
-            return ab_report_error(report, shape->mark, "body '%s': vertex %zu of its polygon is (%g, %g)", body, k + 1, vertex[k][0],
-                                   vertex[k][1]);
-        size = fmax(size, fmax(fabs(vertex[k][0] - vertex[0][0]), fabs(vertex[k][1] - vertex[0][1])));
-    }
     ab_status status = AB_OK;
-    double area = 0;
+    *area = 0;
     for (size_t k = 0; k < n; k++) {
         const size_t next = (k + 1) % n;
         if (fmax(fabs(vertex[k][0] - vertex[next][0]), fabs(vertex[k][1] - vertex[next][1])) <= 1e-13 * size)
-            status =
-                ab_report_error(report, shape->mark, "body '%s': vertices %zu and %zu of its polygon are both (%g, %g); leave one out%s",
-                                body, k + 1, next + 1, vertex[k][0], vertex[k][1], next == 0 ? " (a polygon closes by itself)" : "");
-        area += 0.5 * cross(vertex[0], vertex[k], vertex[next]);
+            status = ab_report_error(report, shape->mark, "body '%s': vertices %zu and %zu of %s are both (%g, %g); leave one out%s", body,
+                                     k + 1, next + 1, what, vertex[k][0], vertex[k][1], next == 0 ? " (a polygon closes by itself)" : "");
+        *area += 0.5 * cross(vertex[0], vertex[k], vertex[next]);
     }
-    AB_TRY(status);
-    outline->edge = malloc(n * sizeof *outline->edge);
-    size_t *number = malloc(n * sizeof *number);
-    if (!outline->edge || !number) {
-        free(number);
-        ab_outline_clear(outline);
-        return ab_report_failure(report, "body '%s': no memory for a polygon of %zu vertices", body, n);
-    }
-    outline->count = n;
-    outline->area = fabs(area);
-    for (size_t k = 0; k < n; k++) { /* the body on the left: a clockwise polygon is walked backwards */
-        const size_t from = area >= 0 ? k : n - 1 - k, to = area >= 0 ? (k + 1) % n : (2 * n - 2 - k) % n;
+    return status;
+}
+
+/* Edges of a loop behind those that are there, the body on the left: the outer loop counter-clockwise, a hole clockwise. */
+static void add_loop(ab_outline *outline, size_t *number, const ab_shape_spec *shape, bool forwards) {
+    const size_t n = shape->count;
+    for (size_t k = 0; k < n; k++) {
+        const size_t from = forwards ? k : n - 1 - k, to = forwards ? (k + 1) % n : (2 * n - 2 - k) % n, e = outline->count + k;
         for (int c = 0; c < 2; c++) {
-            outline->edge[k].from[c] = vertex[from][c];
-            outline->edge[k].to[c] = vertex[to][c];
+            outline->edge[e].from[c] = shape->vertices[from][c];
+            outline->edge[e].to[c] = shape->vertices[to][c];
         }
-        number[k] = 1 + (area >= 0 ? from : to); /* edge m goes from vertex m to the next, as written */
+        number[e] = 1 + outline->count + (forwards ? from : to); /* edge m goes from vertex m to the next, as written; holes count on */
     }
-    outline->convex = true;
-    for (size_t k = 0; k < n; k++)
-        if (cross(outline->edge[k].from, outline->edge[k].to, outline->edge[(k + 1) % n].to) < 0) outline->convex = false;
-    status = check_crossings(outline, number, size, shape->mark, body, report);
+    outline->count += n;
+}
+
+/* Each hole inside of the polygon and not inside of another hole, as far as edges that do not cross can tell: by its first vertex. */
+static ab_status check_holes(const ab_shape_spec *shape, const char *body, ab_report *report) {
+    for (size_t h = 0; h < shape->hole_count; h++)
+        for (size_t m = 0; m <= shape->hole_count; m++) {
+            const ab_shape_spec *other = m == shape->hole_count ? shape : &shape->holes[m];
+            const double *p = shape->holes[h].vertices[0];
+            bool inside = false;
+            for (size_t k = 0; k < other->count; k++) {
+                const double *a = other->vertices[k], *b = other->vertices[(k + 1) % other->count];
+                if ((a[1] <= p[1]) != (b[1] <= p[1]) && a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) > p[0]) inside = !inside;
+            }
+            if (m == h || inside == (other == shape)) continue;
+            return ab_report_error(report, shape->mark, "body '%s': hole %zu of its polygon lies %s; leave it out", body, h + 1,
+                                   inside ? "inside of another hole" : "outside of the polygon");
+        }
+    return AB_OK;
+}
+
+ab_status ab_outline_create(const ab_shape_spec *shape, ab_outline *outline, const char *body, ab_report *report) {
+    *outline = (ab_outline){0};
+    double(*const first)[2] = shape->vertices;
+    double size = 0, area = 0, outer = 0;
+    size_t total = 0;
+    for (size_t h = 0; h <= shape->hole_count; h++) {
+        const ab_shape_spec *loop = h == 0 ? shape : &shape->holes[h - 1];
+        char what[64] = "its polygon";
+        if (h > 0) snprintf(what, sizeof what, "hole %zu of its polygon", h);
+        if (loop->count < 3)
+            return ab_report_error(report, shape->mark, "body '%s': %s of %zu vertices; it needs at least 3", body,
+                                   h == 0 ? "a polygon" : what, loop->count);
+        for (size_t k = 0; k < loop->count; k++) {
+            const double *v = loop->vertices[k];
+            if (!isfinite(v[0]) || !isfinite(v[1]))
+                return ab_report_error(report, shape->mark, "body '%s': vertex %zu of %s is (%g, %g)", body, k + 1, what, v[0], v[1]);
+            size = fmax(size, fmax(fabs(v[0] - first[0][0]), fabs(v[1] - first[0][1])));
+        }
+        total += loop->count;
+    }
+    outline->edge = malloc(total * sizeof *outline->edge);
+    size_t *number = malloc(total * sizeof *number), *loop_of = malloc(total * sizeof *loop_of);
+    ab_status status = AB_OK;
+    if (!outline->edge || !number || !loop_of)
+        status = ab_report_failure(report, "body '%s': no memory for a polygon of %zu vertices", body, total);
+    for (size_t h = 0; h <= shape->hole_count && status == AB_OK; h++) {
+        const ab_shape_spec *loop = h == 0 ? shape : &shape->holes[h - 1];
+        char what[64] = "its polygon";
+        if (h > 0) snprintf(what, sizeof what, "hole %zu of its polygon", h);
+        double signed_area;
+        status = check_vertices(loop, what, size, &signed_area, body, report);
+        for (size_t k = 0; k < loop->count; k++) loop_of[outline->count + k] = outline->count; /* its first edge */
+        add_loop(outline, number, loop, (signed_area >= 0) == (h == 0));
+        if (h == 0) outer = fabs(signed_area);
+        area += h == 0 ? fabs(signed_area) : -fabs(signed_area);
+    }
+    outline->area = area;
+    outline->convex = shape->hole_count == 0;
+    for (size_t k = 0; k < outline->count && status == AB_OK && outline->convex; k++)
+        if (cross(outline->edge[k].from, outline->edge[k].to, outline->edge[(k + 1) % total].to) < 0) outline->convex = false;
+    if (status == AB_OK) status = check_crossings(outline, number, loop_of, size, shape->mark, body, report);
+    if (status == AB_OK) status = check_holes(shape, body, report);
     free(number);
-    if (status == AB_OK && !(outline->area > 1e-13 * size * size))
+    free(loop_of);
+    if (status == AB_OK && !(outer > 1e-13 * size * size && area > 0))
         status = ab_report_error(report, shape->mark, "body '%s': its polygon has no area", body);
     if (status != AB_OK) ab_outline_clear(outline);
     return status;

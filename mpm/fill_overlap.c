@@ -42,16 +42,22 @@ static GEOSGeometry *ring_of(const geos *g, const ab_outline *outline, size_t fi
 
 /* A member as a polygon: its first chain the outside, others holes. */
 static GEOSGeometry *polygon_of(const geos *g, const ab_outline *outline) {
-    size_t next = 0;
-    GEOSGeometry *shell = ring_of(g, outline, 0, &next), *hole = NULL;
-    if (shell && next < outline->count) { /* a ring has one */
-        hole = ring_of(g, outline, next, &next);
-        if (!hole) {
-            GEOSGeom_destroy_r(g->handle, shell);
-            return NULL;
-        }
+    size_t next = 0, count = 0;
+    GEOSGeometry *shell = ring_of(g, outline, 0, &next), *polygon = NULL, **hole = malloc((outline->count + 1) * sizeof *hole);
+    bool good = shell && hole;
+    while (good && next < outline->count) {
+        hole[count] = ring_of(g, outline, next, &next);
+        good = hole[count] != NULL;
+        count += good;
     }
-    return shell ? GEOSGeom_createPolygon_r(g->handle, shell, hole ? &hole : NULL, hole != NULL) : NULL;
+    if (good)
+        polygon = GEOSGeom_createPolygon_r(g->handle, shell, count > 0 ? hole : NULL, (unsigned)count); /* takes them over */
+    else {
+        if (shell) GEOSGeom_destroy_r(g->handle, shell);
+        for (size_t k = 0; k < count; k++) GEOSGeom_destroy_r(g->handle, hole[k]);
+    }
+    free(hole);
+    return polygon;
 }
 
 static ab_status trouble(const geos *g, const char *body, ab_report *report) {

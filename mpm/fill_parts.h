@@ -11,9 +11,13 @@ typedef struct ab_filler { /* one fill under way */
     size_t capacity, surface_capacity;
     ab_fill_rule rule;
     int per_cell;
-    double cell;      /* m */
-    double spacing;   /* m, cell / sqrt(per_cell): side of the square that one point stands for */
-    const char *body; /* name, for messages */
+    double cell;             /* m */
+    double spacing;          /* m, cell / sqrt(per_cell): side of the square that one point stands for */
+    size_t points;           /* cvt: how many; 0: as many as per_cell asks for */
+    uint64_t seed;           /* cvt */
+    double tolerance;        /* cvt: largest move in the last round, in distances between points */
+    int iterations, threads; /* cvt */
+    const char *body;        /* name, for messages */
     ab_report *report;
 } ab_filler;
 

@@ -226,3 +226,20 @@ ab_status ab_fill_union(ab_filler *filler, const ab_shape_spec *shape) {
     free(edges);
     return status;
 }
+
+ab_status ab_union_outline(const ab_filler *filler, const ab_shape_spec *shape, ab_outline *outline) {
+    size_t count = count_members(shape);
+    *outline = (ab_outline){0};
+    if (count == 0)
+        return ab_report_error(filler->report, shape->mark, "body '%s': a union of no shapes; it needs at least one", filler->body);
+    ab_member *members = calloc(count, sizeof *members);
+    if (!members) return ab_report_failure(filler->report, "body '%s': no memory for a union of %zu shapes", filler->body, count);
+    ab_status status = AB_OK;
+    count = 0;
+    list_members(shape, members, &count);
+    for (size_t k = 0; k < count && status == AB_OK; k++) status = outline_member(filler, &members[k]); /* all in group 0 */
+    if (status == AB_OK) status = ab_union_join(members, count, 0, outline, filler->body, filler->report);
+    for (size_t k = 0; k < count; k++) ab_outline_clear(&members[k].outline);
+    free(members);
+    return status;
+}

@@ -21,6 +21,9 @@ ab_status ab_union_group(ab_member *members, size_t count, const char *body, ab_
 /* The outline of all members of a group together. */
 ab_status ab_union_join(const ab_member *members, size_t count, size_t group, ab_outline *outline, const char *body, ab_report *report);
 
+/* The outline of all members of a union, whether they overlap, touch or stand apart. */
+ab_status ab_union_outline(const ab_filler *filler, const ab_shape_spec *shape, ab_outline *outline);
+
 ab_status ab_fill_union(ab_filler *filler, const ab_shape_spec *shape);
 
 #endif
