@@ -68,7 +68,7 @@ static void check(const char *basis, const char *update, const char *material, d
         assert_int_equal(seen, body->born);
     }
     worst_energy = fabs(body->energy.strain) / total_volume;
-    print_message("%-6s %-4s %-14.14s stress %.1e of E, J %.1e, place %.1e m, F %.1e, strain energy %.1e of E\n", basis, update,
+    print_message("%-8s %-4s %-14.14s stress %.1e of E, J %.1e, place %.1e m, F %.1e, strain energy %.1e of E\n", basis, update,
                   material + 7, worst_stress / modulus, worst_volume, worst_place, worst_gradient, worst_energy / modulus);
     assert_true(worst_stress <= 1e-10 * modulus);
     assert_true(worst_volume <= 1e-10);
@@ -81,9 +81,9 @@ static void check(const char *basis, const char *update, const char *material, d
 
 static void test_stress_turns_with_the_material(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "linear"}, *const update[] = {"musl", "usf", "usl"};
+    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3"}, *const update[] = {"musl", "usf", "usl"};
     const double stress[4] = {3, -2, 1, 0.7}, zero[4] = {0};
-    for (int b = 0; b < 2; b++)
+    for (int b = 0; b < 4; b++)
         for (int u = 0; u < 3; u++) {
             check(basis[b], update[u], "model: linear-elastic, E: 10, nu: 0.3", 10, stress);
             check(basis[b], update[u], "model: neo-hookean, E: 10, nu: 0.3", 10, zero);
