@@ -46,12 +46,13 @@ def rate(coarse, fine, refined):
     return f"{math.log(coarse / fine) / math.log(refined):.1f}" if coarse > 0 and fine > 0 else "-"
 
 
-def manufactured(name, basis, transfer):
-    """Errors of displacement on two meshes, the slope, the remainder on the finer one and its seconds."""
-    coarse, fine = (run(name, f"tests/verification/{name}.yaml", ["body"], basis, transfer, {"constants.cells": n}) for n in (16, 32))
+def manufactured(name, body, expect, basis, transfer, per_cell):
+    """Errors of displacement on two meshes, the slope, the remainder on the finer one and its seconds. Domains of gimp that grow with the vortex's shear overlap: fixed there."""
+    basis = "{gimp: fixed}" if (name, basis) == ("vortex", "gimp") else basis
+    coarse, fine = (run(name, f"tests/verification/{name}.yaml", [body], basis, transfer, {"constants.cells": n, f"bodies.{body}.fill.per_cell": per_cell}) for n in (16, 32))
     if not coarse or not fine:
         return ["fails", "", "", ""]
-    before, after = errors(coarse[0])["displacement"], errors(fine[0])["displacement"]
+    before, after = errors(coarse[0])[expect], errors(fine[0])[expect]
     return [figure(100 * after), rate(before, after, 2)] + cells(fine[0], fine[2])
 
 
@@ -114,12 +115,12 @@ def contact_row(basis, transfer, normal):
 
 
 if __name__ == "__main__":
-    rows = [[basis, transfer, *manufactured("vortex", basis, transfer), *manufactured("mms", basis, transfer), *ring(basis, transfer), *self_weight(basis, transfer),
+    rows = [[basis, transfer, *manufactured("vortex", "ring", "displacement and back again", basis, transfer, 9), *manufactured("mms", "square", "displacement along x", basis, transfer, 4)[:2], *manufactured("mms", "square", "displacement along x", basis, transfer, 16), *ring(basis, transfer), *self_weight(basis, transfer),
              *translation(basis, transfer)] for basis in BASES for transfer in TRANSFERS]
     text = table("One body. Errors and remainder of the ledger in per cent (of the largest energy that moves); s: seconds of processor time. Vortex and manufactured solution (vortex.yaml, mms.yaml): error of the "
-                 "displacement on 32 cells, and the slope from 16. Ring (ring.yaml, R/h = 8): angular momentum lost in a turn, mean stress. Column under its own weight (self_weight.yaml, 25 cells): "
+                 "displacement on 32 cells, and the slope from 16; the vortex with 9 points a cell, the other with 4 and with 16. Ring (ring.yaml, R/h = 8): angular momentum lost in a turn, mean stress. Column under its own weight (self_weight.yaml, 25 cells): "
                  "settlement, stress half-way. Translation: a free block through 10^4 cells, the largest change of anything, or the cell up to which the energy is kept to 1e-6.",
-                 ["basis", "transfer", "vortex", "slope", "remainder", "s", "mms", "slope", "remainder", "s", "ring: spin", "stress", "remainder", "s", "weight: settlement", "stress", "remainder", "s",
+                 ["basis", "transfer", "vortex", "slope", "remainder", "s", "mms, 4 a cell", "slope", "mms, 16 a cell", "slope", "remainder", "s", "ring: spin", "stress", "remainder", "s", "weight: settlement", "stress", "remainder", "s",
                   "translation", "s"], rows)
     choices = [(basis, transfer, "average") for basis in BASES for transfer in ("flip", "apic")] + [(basis, "flip", normal) for basis in ("gimp", "bspline2") for normal in NORMALS[1:]]
     text += "\n" + table("Two bodies, multi-velocity contact with gap. Errors and remainder in per cent; seconds. Impact of bars (impact.yaml, 80 cells): force, duration, speed after. Block on an incline "
