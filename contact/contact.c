@@ -267,6 +267,15 @@ static double softer_density(const ab_scene *scene, const contact_pair *pair) {
 /* Its places of contact stay on it as it moves: those of points drift a little against the velocities that move them. */
 static bool is_mesh(const ab_domain *body) { return ab_domain_is_rigid(body) || body->ops->cells; }
 
+/* True where a monitor shows areas of a contact, or pressures. */
+static bool shows_area(const ab_scene *scene, size_t contact) {
+    for (size_t k = 0; k < scene->monitor_count; ++k) {
+        const ab_monitor_spec *m = scene->monitors + k;
+        if (m->contact == (int)contact && (!strcmp(m->value, "length") || !strcmp(m->value, "pressure.max"))) return true;
+    }
+    return false;
+}
+
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
@@ -294,6 +303,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.meshes = is_mesh(pair->a) && is_mesh(pair->b);
         pair->points.view.fixed_places = pair->points.meshes && (spec->responder->class_.needs & AB_NEED_FIXED_PLACES);
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
+        pair->points.view.measure_area = (ab_response_needs(spec) & AB_NEED_AREA) || shows_area(scene, k);
         pair->points.states = HISTORY;
         for (uint32_t s = 0; s < spec->responder->class_.nstate; ++s)
             for (int row = spec->responder->class_.state[s].shape == AB_VECTOR ? 2 : 1; row > 0; --row, ++pair->points.states)

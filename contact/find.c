@@ -7,7 +7,7 @@
 
 enum { NODES_PER_THREAD = 32 };
 
-static const uint32_t SETTING_NEEDS = AB_NEED_DENSITY_GRADIENT | AB_NEED_NEAREST_FACE; /* what a finder may need by its settings */
+static const uint32_t SETTING_NEEDS = AB_NEED_DENSITY_GRADIENT | AB_NEED_NEAREST_FACE | AB_NEED_AREA; /* what may be needed by settings */
 static const uint32_t NODE_NEEDS = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS;
 
 ab_status contact_complain(const contact_pair *pair, const ab_service *service, const char *what, int code, ab_report *report) {
@@ -42,12 +42,13 @@ ab_status contact_can_find(const contact_pair *pair, ab_report *report) {
                 "such as point-to-segment",
                 finder->class_.name, body->spec->name, body->ops->method);
     }
-    const uint32_t more = ab_contact_needs(pair->spec) & ~finder->class_.needs;
+    const uint32_t more =
+        (ab_contact_needs(pair->spec) & ~finder->class_.needs) | (ab_response_needs(pair->spec) & ~pair->spec->responder->class_.needs);
     if (more & ~SETTING_NEEDS)
         return ab_report_error(
             report, pair->spec->mark,
-            "contact by '%s' needs 0x%x with these settings, and only 0x%x may hang on them; declare the rest in the class",
-            finder->class_.name, more, SETTING_NEEDS);
+            "contact by '%s' and '%s' needs 0x%x with these settings, and only 0x%x may hang on them; declare the rest in the class",
+            finder->class_.name, pair->spec->responder->class_.name, more, SETTING_NEEDS);
     if ((ab_contact_needs(pair->spec) & AB_NEED_NEAREST_FACE) && !(has_mesh(pair->a) || has_mesh(pair->b)))
         return ab_report_error(
             report, pair->spec->mark,

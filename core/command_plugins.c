@@ -23,7 +23,8 @@ static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradien
                              {AB_NEED_GAP, "gap"},
                              {AB_NEED_FIXED_PLACES, "fixed places"},
                              {AB_NEED_DENSITY_GRADIENT, "density gradient"},
-                             {AB_NEED_NEAREST_FACE, "nearest face"}};
+                             {AB_NEED_NEAREST_FACE, "nearest face"},
+                             {AB_NEED_AREA, "area"}};
 static const word gives[] = {{AB_GIVE_STRESS, "stress"},
                              {AB_GIVE_DISSIPATION, "dissipation"},
                              {AB_GIVE_WAVE_SPEED, "wave speed"},

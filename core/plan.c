@@ -53,12 +53,13 @@ static const struct {
                      {AB_NEED_SURFACE, "points and faces of the outlines"},
                      {AB_NEED_DISTANCE, "distances from the stiffer body"},
                      {AB_NEED_DENSITY_GRADIENT, "density gradients"},
-                     {AB_NEED_NEAREST_FACE, "nearest faces"}};
+                     {AB_NEED_NEAREST_FACE, "nearest faces"},
+                     {AB_NEED_AREA, "length of the face"}};
 enum { CONTACT_NEED_COUNT = sizeof CONTACT_NEEDS / sizeof *CONTACT_NEEDS };
 
 /* "a, b, c" of what a contact's finder and response need. */
 static void contact_needs(const ab_contact_spec *contact, char *words, size_t size) {
-    const uint32_t needs = ab_contact_needs(contact) | (contact->responder ? contact->responder->class_.needs : 0);
+    const uint32_t needs = ab_contact_needs(contact) | (contact->responder ? ab_response_needs(contact) : 0);
     words[0] = '\0';
     for (size_t k = 0; k < CONTACT_NEED_COUNT; k++) {
         const size_t used = strlen(words);

@@ -18,7 +18,7 @@ enum {
 static const uint32_t material_needs = AB_NEED_DEFORMATION_GRADIENT | AB_NEED_VELOCITY_GRADIENT | AB_NEED_DENSITY;
 static const uint32_t contact_needs = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS |
                                       AB_NEED_SURFACE | AB_NEED_DISTANCE | AB_NEED_GAP | AB_NEED_FIXED_PLACES | AB_NEED_DENSITY_GRADIENT |
-                                      AB_NEED_NEAREST_FACE;
+                                      AB_NEED_NEAREST_FACE | AB_NEED_AREA;
 static const uint32_t material_gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED;
 static const uint32_t contact_gives = AB_GIVE_POINTS | AB_GIVE_IMPULSE;
 

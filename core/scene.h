@@ -119,10 +119,14 @@ typedef struct ab_contact_spec {
     ab_value *finder_settings, *responder_settings;
 } ab_contact_spec;
 
-/* AB_NEED_*: what a contact's finder needs of the bodies, with its settings. */
+/* AB_NEED_*: what a contact's finder needs of the bodies, and its response of contact points, with their settings. */
 static inline uint32_t ab_contact_needs(const ab_contact_spec *contact) {
     const ab_class *finder = &contact->finder->class_;
     return finder->needs | (finder->needs_with ? finder->needs_with(contact->finder_settings) : 0u);
+}
+static inline uint32_t ab_response_needs(const ab_contact_spec *contact) {
+    const ab_class *responder = &contact->responder->class_;
+    return responder->needs | (responder->needs_with ? responder->needs_with(contact->responder_settings) : 0u);
 }
 
 typedef struct ab_load_spec {

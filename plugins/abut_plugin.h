@@ -128,9 +128,10 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     AB_NEED_DISTANCE = 512u, /* responses: points->distance (since 1.1) */
     AB_NEED_GAP = 1024u,     /* responses: a points->gap that is known: not that of a finder with the setting gap: none (since 1.1) */
     AB_NEED_FIXED_PLACES = 2048u, /* responses: contact points that stay where they are on the bodies: points->fixed_places (since 1.1) */
-    /* contact finders, since 1.2; these two alone may be asked for by needs_with */
-    AB_NEED_DENSITY_GRADIENT = 4096u, /* trace->density_gradient */
-    AB_NEED_NEAREST_FACE = 8192u      /* trace->face_normal, face_distance, face_turn: of bodies that have faces (finite elements, rigid) */
+    /* since 1.2; these may be asked for by needs_with, and no others */
+    AB_NEED_DENSITY_GRADIENT = 4096u, /* contact finders: trace->density_gradient */
+    AB_NEED_NEAREST_FACE = 8192u,     /* contact finders: trace->face_normal, face_distance, face_turn: of bodies that have faces (finite elements, rigid) */
+    AB_NEED_AREA = 16384u             /* responses: a points->area that adds up to the length of the face: points->measure_area */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,
@@ -280,6 +281,8 @@ typedef struct ab_points {
                                             times the mean of this and of what relative_velocity ends at */
     int fixed_places; /* 1: a finder keeps its points where they are on the bodies (a response that holds them asked for it, and both are meshes); 0: it may follow the place where
                          round bodies touch, which moves along them as they roll */
+    int measure_area; /* since 1.2. 1: areas are read (a response asked for them, or a monitor shows them), and should add up to the length of the face
+                         that the bodies share; 0: a finder may leave it at what it has at hand */
 } ab_points;
 
 typedef struct ab_contact_ops {
@@ -305,7 +308,7 @@ typedef struct ab_class {
     int (*create)(const ab_host *host, const ab_value *settings, void **self); /* settings in the order of param */
     void (*destroy)(void *self); /* both NULL in a class without settings that keeps nothing: self is then NULL */
     const void *ops; /* ab_material_ops, ab_boundary_ops or ab_contact_ops */
-    uint32_t (*needs_with)(const ab_value *settings); /* optional, finders, since 1.2: what it needs beyond `needs` with these settings; pure, called often */
+    uint32_t (*needs_with)(const ab_value *settings); /* optional, contact, since 1.2: what it needs beyond `needs` with these settings; pure, called often */
 } ab_class;
 
 typedef struct ab_plugin {

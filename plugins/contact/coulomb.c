@@ -106,6 +106,10 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
     return 0;
 }
 
+static uint32_t needs_with(const ab_value *settings) {
+    return settings[1].real > 0.0 || settings[2].real > 0.0 || settings[3].real > 0.0 ? AB_NEED_AREA : 0u;
+}
+
 static const ab_contact_ops OPS = {sizeof OPS, NULL, respond};
 static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
@@ -123,6 +127,7 @@ static const ab_class CLASS = {
     .create = create,
     .destroy = destroy,
     .ops = &OPS,
+    .needs_with = needs_with,
 };
 static const ab_class *const CLASSES[] = {&CLASS};
 const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "coulomb", "1.0", "MIT", CLASSES};

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "closest_approach.h"
+#include "node_area.h"
 #include "node_normals.h"
 
 static const double CORNER = 0.866; /* cosine between two normals that lean by more than a face does */
@@ -27,7 +28,8 @@ typedef struct multi_velocity {
     const ab_host *host;
     int64_t normal; /* -1: fixed direction */
     double direction[3];
-    int gap;              /* GAP_* */
+    int gap; /* GAP_* */
+    node_areas areas;
     double corner_cosine; /* of the angle beyond which the corner rule looks at two normals */
 } multi_velocity;
 
@@ -63,6 +65,7 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
 
 static void destroy(void *self) {
     multi_velocity *mv = self;
+    node_areas_release(mv->host, &mv->areas);
     mv->host->release(mv->host->context, mv);
 }
 
@@ -331,7 +334,9 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
 }
 
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
-    const multi_velocity *mv = self;
+    multi_velocity *mv = self;
+    const int measure = out->measure_area && a->dimension == 2;
+    if (measure && !node_areas_reserve(mv->host, &mv->areas, a->count)) return -1;
     if (a->count > out->capacity &&
         mv->host->reserve(mv->host->context, out, a->count, a->stencil_start[a->count] + b->stencil_start[b->count]) != 0)
         return -1;
@@ -360,12 +365,14 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
         out->gap[n] = gap;
         if (out->distance) out->distance[n] = distance_to(a->stiffness >= b->stiffness ? a : b, i, normal);
         out->area[n] = area;
+        if (measure) mv->areas.node[n] = (uint32_t)i;
         out->key[n] = a->key[i];
         ++n;
         out->a_start[n] = sa;
         out->b_start[n] = sb;
     }
     out->count = n;
+    if (measure) node_areas_share(&mv->areas, a, b, out);
     return 0;
 }
 

@@ -209,6 +209,8 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
     return 0;
 }
 
+static uint32_t needs_with(const ab_value *settings) { return settings[0].integer == OF_MODULUS ? AB_NEED_AREA : 0u; }
+
 static const ab_contact_ops OPS = {sizeof OPS, NULL, respond};
 static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
@@ -226,6 +228,7 @@ static const ab_class CLASS = {
     .create = create,
     .destroy = destroy,
     .ops = &OPS,
+    .needs_with = needs_with,
 };
 static const ab_class *const CLASSES[] = {&CLASS};
 const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "penalty", "1.0", "MIT", CLASSES};

@@ -1,0 +1,203 @@
+/* node_area.h: how much of the face that two bodies share belongs to each contact point on shared nodes, two dimensions. For finders in this folder.
+ *
+ * A body's area vector at a node, sum_p V_p G_ip, is the node's share of its face; but points that stand differently give two bodies that touch different shares at one
+ * node, and nodes that only one of them reaches are not seen at all. The smaller of both shares, node by node, adds up to too little, by up to a half. So the face is
+ * measured itself: it lies across the normal half way between the bodies, as far as points of both lie beside it. Its length is handed to the nodes around each piece by the hat
+ * functions of the grid, which add up to 1 (over the contact points among them), and then, across the face, to contact points in proportion to the mean of both bodies'
+ * shares there, so that a basis that reaches further spreads it further. Neither step loses anything: areas of contact points add up to the length. */
+#ifndef NODE_AREA_H
+#define NODE_AREA_H
+
+#include <math.h>
+#include <stdint.h>
+
+#include "abut_plugin.h"
+#include "closest_approach.h"
+
+enum { AREA_PIECES = 12, AREA_REACH = 2, AREA_WIDE = 2 * AREA_REACH + 1 }; /* pieces of a face to either side of the node; nodes */
+static const double AREA_PIECE = 0.125;                                    /* of a cell */
+static const double AREA_DEPTH = 0.5; /* of a cell: points whose sides are deeper below the furthest one are no part of the face */
+
+typedef struct node_areas { /* nodes by their place on the grid, and what was found at each */
+    uint32_t *table;        /* number + 1 of the node that hashes there, 0: none; a power of two */
+    size_t slots;
+    int32_t *place;  /* 2 per node: in cells */
+    double *share;   /* per node: mean of both shares; negative where there is no contact point */
+    uint32_t *node;  /* per contact point; */
+    uint32_t *point; /* per node: its contact point */
+    size_t capacity;
+} node_areas;
+
+static inline void node_areas_release(const ab_host *host, node_areas *w) {
+    host->release(host->context, w->table), host->release(host->context, w->place), host->release(host->context, w->share);
+    host->release(host->context, w->node), host->release(host->context, w->point);
+    *w = (node_areas){0};
+}
+
+/* Room for `count` nodes. 0: no memory. */
+static int node_areas_reserve(const ab_host *host, node_areas *w, size_t count) {
+    if (count <= w->capacity) return 1;
+    node_areas_release(host, w);
+    const size_t n = 2 * count + 32;
+    size_t slots = 64;
+    while (slots < 2 * n) slots *= 2;
+    w->table = host->allocate(host->context, slots * sizeof *w->table);
+    w->place = host->allocate(host->context, 2 * n * sizeof *w->place);
+    w->share = host->allocate(host->context, n * sizeof *w->share);
+    w->node = host->allocate(host->context, n * sizeof *w->node);
+    w->point = host->allocate(host->context, n * sizeof *w->point);
+    if (!w->table || !w->place || !w->share || !w->node || !w->point) return 0;
+    w->slots = slots;
+    w->capacity = n;
+    return 1;
+}
+
+static size_t node_areas_hash(const node_areas *w, int32_t x, int32_t y) {
+    const uint64_t mixed = ((uint64_t)(uint32_t)x * 0x9e3779b1u) ^ ((uint64_t)(uint32_t)y * 0x85ebca77u);
+    return (size_t)(mixed ^ mixed >> 15) & (w->slots - 1);
+}
+
+/* Number + 1 of the node there, 0: none is shared. */
+static uint32_t node_areas_at(const node_areas *w, int32_t x, int32_t y) {
+    for (size_t slot = node_areas_hash(w, x, y); w->table[slot]; slot = (slot + 1) & (w->slots - 1)) {
+        const int32_t *at = w->place + 2 * (size_t)(w->table[slot] - 1);
+        if (at[0] == x && at[1] == y) return w->table[slot];
+    }
+    return 0;
+}
+
+/* The contact points around node i, by node: number + 1 of the node, 0 where there is none. */
+static void node_areas_around(const node_areas *w, size_t i, uint32_t around[AREA_WIDE * AREA_WIDE]) {
+    const int32_t *at = w->place + 2 * i;
+    for (int y = 0; y < AREA_WIDE; ++y)
+        for (int x = 0; x < AREA_WIDE; ++x) {
+            const uint32_t found = node_areas_at(w, at[0] + x - AREA_REACH, at[1] + y - AREA_REACH);
+            around[y * AREA_WIDE + x] = found && w->share[found - 1] >= 0.0 ? found : 0;
+        }
+}
+
+typedef struct
+    face_cover { /* of one body, along the face from the node, in pieces: the stretch of each that its points lie beside, 0 to 1 */
+    double low[2 * AREA_PIECES], high[2 * AREA_PIECES];
+    double reach; /* m, along the direction towards the other body, from the node */
+    int boxed;    /* only points in the cells that meet at the node are listed */
+} face_cover;
+
+static const double AREA_SEEN =
+    0.7; /* cells: as far as points in the cells at the node cover the face for certain, each by half its size */
+
+/* n: towards the other body. */
+static void face_cover_of(const ab_trace *t, size_t i, const double n[2], face_cover *cover) {
+    const double *x = t->near_position, *y = x + t->near_ld, *xx = t->near_extent, *yy = xx + t->near_ld, *xy = yy + t->near_ld;
+    const double px = t->position[i], py = t->position[t->ld + i], inverse = 1.0 / (AREA_PIECE * t->cell);
+    const double nn[3] = {n[0] * n[0], n[1] * n[1], 2.0 * n[0] * n[1]};
+    double beside = -INFINITY, all = -INFINITY;
+    cover->boxed = 1;
+    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+        const double rx = x[k] - px, ry = y[k] - py,
+                     far = rx * n[0] + ry * n[1] + sqrt(larger(nn[0] * xx[k] + nn[1] * yy[k] + nn[2] * xy[k], 0.0));
+        all = larger(all, far);
+        cover->boxed = cover->boxed && fabs(rx) <= t->cell && fabs(ry) <= t->cell;
+        if (fabs(ry * n[0] - rx * n[1]) <= 0.5 * t->cell) beside = larger(beside, far);
+    }
+    cover->reach = beside > -INFINITY ? beside : all;
+    for (int q = 0; q < 2 * AREA_PIECES; ++q) cover->low[q] = 1.0, cover->high[q] = 0.0;
+    for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
+        const double rx = x[k] - px, ry = y[k] - py, depth = cover->reach - AREA_DEPTH * t->cell - (rx * n[0] + ry * n[1]);
+        const double along2 = nn[0] * xx[k] + nn[1] * yy[k] + nn[2] * xy[k];
+        if (depth > 0.0 && depth * depth > along2) continue;
+        const double half = sqrt(larger(nn[1] * xx[k] + nn[0] * yy[k] - nn[2] * xy[k], 0.0)), s = ry * n[0] - rx * n[1];
+        const double from = larger((s - half) * inverse + AREA_PIECES, 0.0),
+                     to = smaller((s + half) * inverse + AREA_PIECES, 2 * AREA_PIECES - 1e-9);
+        for (int q = (int)from; q <= (int)to && from < to; ++q) {
+            cover->low[q] = smaller(cover->low[q], larger(from - q, 0.0));
+            cover->high[q] = larger(cover->high[q], smaller(to - q, 1.0));
+        }
+    }
+}
+
+/* Where points beyond the cells at the node are not listed, the face goes on there as it does where it is last seen. across: m/cell, from the node to the face; n: as for the
+ * cover. */
+static void face_cover_outwards(face_cover *cover, double across, const double n[2]) {
+    for (int way = -1; way <= 1 && cover->boxed; way += 2) {
+        int goes_on = 0;
+        for (int k = 0; k < AREA_PIECES; ++k) {
+            const int q = way < 0 ? AREA_PIECES - 1 - k : AREA_PIECES + k;
+            const double s = AREA_PIECE * (q + 0.5 - AREA_PIECES), x = fabs(across * n[0] - s * n[1]), y = fabs(across * n[1] + s * n[0]);
+            if (larger(x, y) <= AREA_SEEN)
+                goes_on = cover->high[q] > cover->low[q];
+            else if (goes_on)
+                cover->low[q] = 0.0, cover->high[q] = 1.0;
+        }
+    }
+}
+
+/* What the hat function of node i takes of the face there, m; of two or more contact points around a piece each takes its part. */
+static double face_length(const ab_trace *a, const ab_trace *b, size_t i, const double n[2], const uint32_t around[AREA_WIDE * AREA_WIDE]) {
+    face_cover of_a, of_b;
+    face_cover_of(a, i, n, &of_a);
+    face_cover_of(b, i, (const double[2]){-n[0], -n[1]}, &of_b);
+    const double inverse = 1.0 / a->cell, across = 0.5 * (of_a.reach - of_b.reach) * inverse; /* half way between both */
+    face_cover_outwards(&of_a, across, n);
+    face_cover_outwards(&of_b, -across, (const double[2]){-n[0], -n[1]});
+    double sum = 0.0;
+    for (int q = 0; q < 2 * AREA_PIECES; ++q) {
+        const int r = 2 * AREA_PIECES - 1 - q; /* b looks the other way */
+        const double covered = smaller(of_a.high[q], 1.0 - of_b.low[r]) - larger(of_a.low[q], 1.0 - of_b.high[r]);
+        if (!(covered > 0.0)) continue;
+        const double s = AREA_PIECE * (q + 0.5 - AREA_PIECES), x = across * n[0] - s * n[1], y = across * n[1] + s * n[0];
+        if (!(fabs(x) < 1.0 && fabs(y) < 1.0)) continue;
+        const int dx = x < 0.0 ? -1 : 1, dy = y < 0.0 ? -1 : 1, middle = AREA_REACH * AREA_WIDE + AREA_REACH;
+        const double u = fabs(x), v = fabs(y), own = (1.0 - u) * (1.0 - v);
+        double all = own;
+        if (around[middle + dx]) all += u * (1.0 - v);
+        if (around[middle + dy * AREA_WIDE]) all += (1.0 - u) * v;
+        if (around[middle + dy * AREA_WIDE + dx]) all += u * v;
+        sum += covered * own / all;
+    }
+    return sum * AREA_PIECE * a->cell;
+}
+
+/* Areas of all contact points; w->node says of which node each is. */
+static void node_areas_share(node_areas *w, const ab_trace *a, const ab_trace *b, ab_points *out) {
+    for (size_t slot = 0; slot < w->slots; ++slot) w->table[slot] = 0;
+    for (size_t i = 0; i < a->count; ++i) {
+        int32_t *x = w->place + 2 * i;
+        for (size_t c = 0; c < 2; ++c) x[c] = (int32_t)rint(a->position[c * a->ld + i] / a->cell);
+        size_t slot = node_areas_hash(w, x[0], x[1]);
+        while (w->table[slot]) slot = (slot + 1) & (w->slots - 1);
+        w->table[slot] = (uint32_t)i + 1;
+        w->share[i] = -1.0;
+    }
+    for (size_t k = 0; k < out->count; ++k) {
+        const size_t i = w->node[k];
+        double mean = 0.0;
+        for (size_t c = 0; c < 2; ++c)
+            mean += 0.5 * out->normal[c * out->ld + k] * (a->area_vector[c * a->ld + i] - b->area_vector[c * b->ld + i]);
+        w->share[i] = larger(mean, 0.0);
+        w->point[i] = (uint32_t)k;
+        out->area[k] = 0.0;
+    }
+    for (size_t k = 0; k < out->count; ++k) {
+        const size_t i = w->node[k];
+        const double n[2] = {out->normal[k], out->normal[out->ld + k]};
+        uint32_t around[AREA_WIDE * AREA_WIDE];
+        node_areas_around(w, i, around);
+        const double length = face_length(a, b, i, n, around);
+        if (!(length > 0.0)) continue;
+        double weight[AREA_WIDE * AREA_WIDE], sum = 0.0;
+        for (int at = 0; at < AREA_WIDE * AREA_WIDE; ++at) {
+            const double along = (at % AREA_WIDE - AREA_REACH) * n[1] - (at / AREA_WIDE - AREA_REACH) * n[0];
+            weight[at] = around[at] ? larger(1.0 - fabs(along), 0.0) * w->share[around[at] - 1] : 0.0;
+            sum += weight[at];
+        }
+        if (!(sum > 0.0)) {
+            out->area[k] += length;
+            continue;
+        }
+        for (int at = 0; at < AREA_WIDE * AREA_WIDE; ++at)
+            if (weight[at] > 0.0) out->area[w->point[around[at] - 1]] += length * weight[at] / sum;
+    }
+}
+
+#endif
