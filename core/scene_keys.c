@@ -98,7 +98,7 @@ static const ab_key body[] = {
     [BODY_MATERIAL] = {"material", AB_KEY_NAME, .help = "name of one of the materials; required but for rigid bodies, whose mass it gives"},
     [BODY_SHAPE] = {"shape", AB_KEY_SECTION, .help = "outline at the start; material-points, rigid"},
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
-    [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|bspline2|bspline3", .initial = "gimp",
+    [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|bspline2|bspline3|cpdi", .initial = "gimp",
                     .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
     [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic", .initial = "flip",
                        .help = "how velocities come back; a blend is {flip: 0.99}, further ones are {xpic: 2} and {fmpm: 2}"},

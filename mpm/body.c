@@ -311,10 +311,10 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
                (body->slot ? body->born * 4 : 0) + (body->domain.spec->has_force ? body->block_capacity * 128 : 0) +
                mpm_outline_bytes(body->outline) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
-    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s%s",
+    snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
-             body->rows.gradient >= 0 ? ", deformation gradient" : "", body->rows.affine >= 0 ? ", affine velocity" : "",
-             body->rows.mean_stress >= 0 ? ", mean stress of its own" : "");
+             body->rows.corners >= 0 ? ", domain half sides" : "", body->rows.gradient >= 0 ? ", deformation gradient" : "",
+             body->rows.affine >= 0 ? ", affine velocity" : "", body->rows.mean_stress >= 0 ? ", mean stress of its own" : "");
     const ab_class *class_ = &body->material->loaded->class_;
     for (uint32_t s = 0; s < class_->nstate; ++s) {
         const size_t used = strlen(p->fields);

@@ -42,6 +42,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int extent;           /* 3: (xx, yy, xy) of the domain tensor, m2 */
     int half;             /* 2: half sizes of the point's domain, m (gimp) */
     int inverse_half;     /* 2: their inverses */
+    int corners;          /* 4: half sides of the point's domain, (x, y) of one and of the other, m (cpdi) */
     int gradient;         /* 4: deformation gradient xx, xy, yx, yy */
     int mean_stress;      /* 1: (xx + yy)/2 as the material gave it, while that of the stress is averaged (f_bar) */
     int affine;           /* 4: of the velocity about the point, xx, xy, yx, yy (apic, tpic): see transfer.inc */
@@ -102,13 +103,15 @@ typedef struct mpm_kernel {
     int patch;                /* MPM_PATCH_NARROW or MPM_PATCH_WIDE */
     double reach;             /* cells: farther away than this in some direction a point has no weight */
     bool domains;             /* points have domains of their own: rows half, inverse_half, and extent where they follow the stretch */
+    bool convected;           /* points have parallelograms of their own: rows corners */
     bool moment, same_spread; /* apic takes moments of the velocities; D is the same everywhere but at sides: see transfer.inc */
     /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places, with 1 .. 8 points per direction */
     double courant[8];
     /* First nodes of the stencils of a block's points standing at rows x, x+1 (ROW_X or ROW_NEXT), counted from the grid's corner; with all rows up to date. */
     void (*first)(const mpm_body *, const double *block, int x, int32_t node[2][8]);
     void (*stencils)(const mpm_body *, const mpm_tile *, const double *block, mpm_stencils *);
-    void (*spreads)(const mpm_body *, const mpm_tile *, const double *block, double d[2][8]); /* sum N (x_i - x_p)^2 by direction, m2 */
+    void (*spreads)(const mpm_body *, const mpm_tile *, const double *block,
+                    double d[3][8]); /* sum N (x_i - x_p)(x_i - x_p)^T: xx, yy, xy, m2 */
     /* Weights on the stencil of the point in `lane` (order of mpm_stencils) for the force on a piece of outline about load->now, half of it load->stretch: such that
      * it balances the internal force of a uniform stress. NULL: those of the point. */
     void (*carry)(const mpm_body *, const mpm_tile *, const double *block, int lane, const mpm_load *, double value[MPM_STENCIL]);

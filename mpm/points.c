@@ -8,8 +8,15 @@
 
 void mpm_rows_plan(mpm_body *body) {
     const ab_class *class_ = &body->material->loaded->class_;
-    mpm_rows rows = {
-        .count = ROW_OTHERS, .extent = -1, .half = -1, .inverse_half = -1, .gradient = -1, .mean_stress = -1, .affine = -1, .state = -1};
+    mpm_rows rows = {.count = ROW_OTHERS,
+                     .extent = -1,
+                     .half = -1,
+                     .inverse_half = -1,
+                     .corners = -1,
+                     .gradient = -1,
+                     .mean_stress = -1,
+                     .affine = -1,
+                     .state = -1};
     bool gap = false; /* a finder that looks at points near nodes or faces needs the size of a point in every direction */
     for (size_t k = 0; k < body->scene->contact_count; ++k) {
         const ab_contact_spec *contact = body->scene->contacts + k;
@@ -18,6 +25,7 @@ void mpm_rows_plan(mpm_body *body) {
     }
     const bool domains = body->kernel->domains;
     if (gap || (domains && body->contiguous)) rows.extent = rows.count, rows.count += 3;
+    if (body->kernel->convected) rows.corners = rows.count, rows.count += 4;
     if (domains) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
     if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
     if (body->f_bar) rows.mean_stress = rows.count, rows.count += 1;
@@ -84,6 +92,8 @@ static void place_point(const mpm_body *body, const ab_fill *fill, size_t i, dou
             b[8 * (rows.half + c) + l] = half;
             b[8 * (rows.inverse_half + c) + l] = 1.0 / half;
         }
+    if (rows.corners >= 0)
+        for (int c = 0; c < 2; ++c) b[8 * (rows.corners + 3 * c) + l] = sqrt(a[c]);
     if (rows.gradient >= 0) b[8 * rows.gradient + l] = b[8 * (rows.gradient + 3) + l] = 1.0;
 }
 

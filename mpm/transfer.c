@@ -59,7 +59,7 @@ void mpm_affine_start(mpm_body *body, const ab_fill *fill) {
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
         for (uint32_t b = tile->first; tile->patch >= 0 && b < tile->first + tile->blocks; ++b) {
-            double *block = mpm_block(body, b), d[2][8];
+            double *block = mpm_block(body, b), d[3][8]; /* domains are boxes yet: xy is 0 */
             body->kernel->spreads(body, tile, block, d);
             for (size_t l = 0; l < 8; ++l) {
                 const uint64_t id = body->ids[b * 8 + l];
@@ -79,14 +79,21 @@ double mpm_affine_inner(const mpm_body *body, size_t slot, double *spin, double 
     *spin = *inertia = 0.0;
     if (body->rows.affine < 0) return 0.0;
     const double *block = mpm_block(body, slot / 8), *kept = block + 8 * body->rows.affine + slot % 8;
-    double d[2][8], b[4], inner = 0.0;
+    double d[3][8], c[4], b[4], inner = 0.0;
     body->kernel->spreads(body, body->tiles + mpm_tile_of_block(body, (uint32_t)(slot / 8)), block, d);
-    for (int c = 0; c < 4; ++c) {
-        const double spread = d[c % 2][slot % 8], value = kept[8 * c];
-        b[c] = body->keeps_moment ? value : value * spread;
-        inner += b[c] * (body->keeps_moment ? value / spread : value);
+    const double xx = d[0][slot % 8], yy = d[1][slot % 8], xy = d[2][slot % 8], area = xx * yy - xy * xy;
+    for (int k = 0; k < 4; k += 2) {
+        const double x = kept[8 * k], y = kept[8 * (k + 1)];
+        b[k] = c[k] = x, b[k + 1] = c[k + 1] = y;
+        if (!body->keeps_moment)
+            b[k] = x * xx + y * xy, b[k + 1] = x * xy + y * yy;
+        else if (body->kernel->convected)
+            c[k] = (x * yy - y * xy) / area, c[k + 1] = (y * xx - x * xy) / area;
+        else
+            c[k] = x / xx, c[k + 1] = y / yy;
+        inner += b[k] * c[k] + b[k + 1] * c[k + 1];
     }
     *spin = b[2] - b[1];
-    *inertia = d[0][slot % 8] + d[1][slot % 8];
+    *inertia = xx + yy;
     return inner;
 }
