@@ -99,7 +99,9 @@ static const ab_key body[] = {
     [BODY_SHAPE] = {"shape", AB_KEY_SECTION, .help = "outline at the start; material-points, rigid"},
     [BODY_FILL] = {"fill", AB_KEY_SECTION, .help = "how points are placed in it; default {rule: regular, per_cell: 4}"},
     [BODY_BASIS] = {"basis", AB_KEY_WORD, .words = "linear|gimp|bspline2|bspline3|cpdi", .initial = "gimp",
-                    .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}"},
+                    .help = "basis functions; gimp may say {gimp: contiguous} or {gimp: fixed}; cpdi: domains are parallelograms that the "
+                            "deformation carries "
+                            "along, for large shear and stretch"},
     [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic", .initial = "flip",
                        .help = "how velocities come back; a blend is {flip: 0.99}, further ones are {xpic: 2} and {fmpm: 2}"},
     [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",

@@ -110,7 +110,7 @@ static void test_an_affine_field_comes_back_as_it_is(void **state) {
                 }
                 for (size_t slot = 0; slot < body->block_count * 8; slot++) {
                     if (!is_point(body, slot)) continue;
-                    double d[2][8];
+                    double d[3][8];
                     body->kernel->spreads(body, body->tiles + mpm_tile_of_block(body, (uint32_t)(slot / 8)), mpm_block(body, slot / 8), d);
                     const double x = *point_row(body, slot, ROW_X) + body->origin[0],
                                  y = *point_row(body, slot, ROW_X + 1) + body->origin[1];
