@@ -63,22 +63,38 @@ static void note_strain(contact_pair *pair, double dt) {
     }
 }
 
+static void begin_with(contact_points *points, const contact_side side[2], size_t i, double jn, double jt) {
+    ab_points *p = &points->view;
+    const size_t ld = p->ld;
+    if (jn == 0.0 && jt == 0.0) return;
+    const double nx = p->normal[i], ny = p->normal[ld + i], j[2] = {jn * nx - jt * ny, jn * ny + jt * nx};
+    for (size_t c = 0; c < 2; ++c) p->impulse[c * ld + i] = points->applied[c * ld + i] = j[c];
+    contact_push(side, i, j);
+}
+
 /* Points from surfaces begin with the forces of the last step, each stage with its own. Where more of them push than there are freedoms (the two passes say much the
  * same twice) rounds that begin at nothing would share a force out between them by their order alone, whatever the gaps are; so what one step leaves undone the next
  * goes on with. row: HISTORY_*, of the force along the normal. status: of the points, which push along no other direction; NULL: any. */
-static void begin_with_last_forces(contact_pair *pair, const contact_side side[2], double dt, size_t row, const double *status) {
+static bool begin_with_last_forces(contact_pair *pair, const contact_side side[2], double dt, size_t row, const double *status) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     const size_t ld = p->ld;
     const double *force = p->state0 + (points->states - HISTORY + row) * ld;
+    double *shared = points->spread.wanted ? contact_spread_room(points) : NULL;
+    if (points->spread.wanted && !shared) return false;
     for (size_t i = 0; i < p->count; ++i) {
         const double jn = status && status[i] == STATUS_FREE ? 0.0 : dt * force[i],
                      jt = status && status[i] != STATUS_BOTH ? 0.0 : dt * force[ld + i];
-        if (jn == 0.0 && jt == 0.0) continue;
-        const double nx = p->normal[i], ny = p->normal[ld + i], j[2] = {jn * nx - jt * ny, jn * ny + jt * nx};
-        for (size_t c = 0; c < 2; ++c) p->impulse[c * ld + i] = points->applied[c * ld + i] = j[c];
-        contact_push(side, i, j);
+        if (shared) {
+            shared[i] = jn, shared[ld + i] = jt;
+            continue;
+        }
+        begin_with(points, side, i, jn, jt);
     }
+    if (!shared) return true;
+    if (!contact_spread_forces(points, side)) return false;
+    for (size_t i = 0; i < p->count; ++i) begin_with(points, side, i, shared[i], shared[ld + i]);
+    return true;
 }
 
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
@@ -100,11 +116,10 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
         points->relative_old[p->ld + i] = v[1];
     }
     if (!points->surfaces) return AB_OK;
-    if (stage == AB_STAGE_DYNAMIC)
-        begin_with_last_forces(pair, side, step->dt, HISTORY_FORCE, NULL);
-    else
-        begin_with_last_forces(pair, side, step->dt, HISTORY_STRAIN, contact_history(pair, answered) + HISTORY_STATUS * p->ld);
-    return AB_OK;
+    const bool done = stage == AB_STAGE_DYNAMIC ? begin_with_last_forces(pair, side, step->dt, HISTORY_FORCE, NULL)
+                                                : begin_with_last_forces(pair, side, step->dt, HISTORY_STRAIN,
+                                                                         contact_history(pair, answered) + HISTORY_STATUS * p->ld);
+    return done ? AB_OK : ab_report_failure(report, "no memory for %zu contact points", p->count);
 }
 
 /* Forces, work and penetration of the step just solved. The work of an impulse is impulse . (old + new relative velocity)/2, exact for what it
@@ -116,7 +131,7 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
     const ab_points *p = &points->view;
     ab_contact_totals *t = all->totals + number;
     const double friction_work = t->friction_work, contact_work = t->contact_work;
-    *t = (ab_contact_totals){.points = p->count, .failures = pair->failures};
+    *t = (ab_contact_totals){.points = p->count, .failures = pair->failures, .list = p};
     contact_side side[2];
     contact_sides(pair, side);
     double friction = 0.0, loss = 0.0, tangential = 0.0;
@@ -135,7 +150,7 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
         t->normal_force += fabs(jn) / step->dt;
         tangential += jt / step->dt;
         t->area += p->area[i];
-        if (p->area[i] > 0.0) t->peak_pressure = fmax(t->peak_pressure, jn / (p->area[i] * step->dt));
+        if (p->area[i] > 0.0 && !points->spread.wanted) t->peak_pressure = fmax(t->peak_pressure, jn / (p->area[i] * step->dt));
         t->moment +=
             ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
         ++t->active;
@@ -201,11 +216,29 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
     return AB_OK;
 }
 
+/* What the results may write of the points: the impulses are the kinematic stage's from now on. */
+static void show(contact_pair *pair, ab_contact_totals *t) {
+    contact_points *points = &pair->points;
+    const size_t ld = points->view.ld;
+    const double *history = contact_history(pair, true);
+    t->normal = history + HISTORY_FORCE * ld;
+    t->tangential = history + HISTORY_FRICTION * ld;
+    t->slip = history + HISTORY_TANGENTIAL * ld;
+    if (!points->spread.wanted) return;
+    contact_side side[2];
+    contact_sides(pair, side);
+    t->peak_pressure = contact_spread_pressure(points, side, t->normal, t->tangential);
+    if (!points->spread.force) return;
+    t->pressure = points->spread.force + 2 * ld;
+    t->shear = points->spread.force + 3 * ld;
+}
+
 static void settle(ab_interaction *face, const ab_step *step) {
     contact_all *all = (contact_all *)face;
     for (size_t k = 0; k < all->count; ++k) {
         book(all, k, step);
         note_history(all->pairs + k, step->dt);
+        show(all->pairs + k, all->totals + k);
     }
 }
 
@@ -302,6 +335,9 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
         pair->points.meshes = is_mesh(pair->a) && is_mesh(pair->b);
         pair->points.view.fixed_places = pair->points.meshes && (spec->responder->class_.needs & AB_NEED_FIXED_PLACES);
+        for (int side = 1; side >= 0; --side)
+            if (pair->points.surfaces && scene->bodies[spec->body[side]].surface_points > 0.0)
+                pair->points.spread = (contact_spread){.wanted = true, .side = side};
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.view.measure_area = (ab_response_needs(spec) & AB_NEED_AREA) || shows_area(scene, k);
         pair->points.states = HISTORY;

@@ -23,6 +23,16 @@ typedef struct contact_sums {
     size_t capacity;
 } contact_sums;
 
+/* spread.c: forces shared among points that are more than the freedoms they push on */
+typedef struct contact_spread {
+    bool wanted;
+    int side;             /* of the body whose nodes they go through */
+    double *force;        /* 4 rows of ld: along the normal and across it; the pressure, and what acts across, of the last step, Pa */
+    double *node;         /* 3 per dof: force along the normal, across it, area */
+    uint32_t *mark, look; /* by dof: the look that met it last */
+    size_t ld, dofs;
+} contact_spread;
+
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
     ab_points view;              /* what plugins see */
@@ -40,6 +50,7 @@ typedef struct contact_points {
     double *old_state;
     size_t old_count, old_capacity;
     contact_sums sums;
+    contact_spread spread;
     uint32_t *seen; /* by dof: the last look for shared dofs that met it */
     size_t seen_capacity;
     uint32_t look; /* number of the last one */
@@ -121,6 +132,13 @@ void contact_watch_depth(contact_pair *, ab_report *);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);
+
+/* spread.c: room for forces, rows of ld (NULL: no memory); and their sharing, in place, with positive weights alone. False: no memory */
+double *contact_spread_room(contact_points *);
+bool contact_spread_forces(contact_points *, const contact_side side[2]);
+/* Shares out the step's forces, for what is reported: fills the last two rows; the largest pressure, Pa. */
+double contact_spread_pressure(contact_points *, const contact_side side[2], const double *normal, const double *tangential);
+void contact_spread_destroy(contact_spread *);
 
 /* share.c */
 bool contact_share_sums(contact_points *); /* into state0, from the states of the last step; false: no memory */

@@ -65,6 +65,7 @@ void contact_points_destroy(contact_points *points) {
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
     free(points->seen);
     contact_sums_destroy(&points->sums);
+    contact_spread_destroy(&points->spread);
 }
 
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60

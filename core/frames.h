@@ -4,6 +4,7 @@
  *   /frame_000000            attributes time, time_unit, step
  *     /<body>                one group a body: position, id, body and the fields asked for. In the first frame, and in each that has another number of rows:
  *                            vertices (0, 1, 2 ...: a cloud of points) or connectivity (the nodes of each element)
+ *     /contact_0             one group a contact where contact points are asked for: position, normal, gap, area, force, pressure, shear, slip, and vertices
  *     /all                   the same rows of every body one after the other, as virtual datasets: no second copy of the data
  * Every dataset has the attributes "unit" and "components". Vectors have three components, symmetric tensors six in the order
  * in which ParaView names and uses them (xx yy zz xy yz xz). That is why the XDMF calls them a Matrix: its own Tensor6 means another order, which
@@ -11,7 +12,7 @@
 #ifndef AB_FRAMES_H
 #define AB_FRAMES_H
 
-#include "core/domain.h"
+#include "core/results.h"
 
 typedef struct ab_frames ab_frames;
 
@@ -19,7 +20,8 @@ typedef struct ab_frames ab_frames;
 ab_status ab_frames_create(const ab_scene *scene, ab_domain *const *domains, ab_frames **frames, ab_report *report);
 /* Clears frames of an earlier run in this folder (which exists). */
 ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *report);
-ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *report);
+/* contacts: of the last step, contact_count; looked at where the scene writes contact points. */
+ab_status ab_frames_write(ab_frames *frames, const ab_contact_totals *contacts, double time, long step, ab_report *report);
 /* Gathers the frames into one self-contained results.h5. Where there is no room for that the linked form stays, with a warning. */
 ab_status ab_frames_finish(ab_frames *frames, ab_report *report);
 size_t ab_frames_count(const ab_frames *frames);

@@ -39,6 +39,7 @@ struct ab_frames {
     double *values, *rows; /* as a body gives them; as the file has them */
     size_t value_capacity, row_capacity;
     ab_xdmf *cloud, **of_body; /* of_body[b]: NULL where body b is all there is, and is a cloud */
+    ab_xdmf **of_contact;      /* NULL unless contact points are written */
 };
 
 /* ---- results_data.c ---- */
@@ -68,6 +69,18 @@ hid_t ab_frames_group(const frame_record *record, const char *name, hid_t file);
 int ab_frames_cloud(ab_frames *frames, size_t number, const char *frame, hid_t parent);
 /* Removes the frames of an earlier run, complete or not. Files of other names stay. */
 void ab_frames_clear(const char *path);
+
+/* ---- results_contacts.c: nothing is done unless contact points are asked for ---- */
+
+enum { CONTACT_NAME = 32 };
+void ab_frames_contact_name(size_t contact, char name[CONTACT_NAME]); /* of its group */
+ab_status ab_frames_contacts_check(const ab_frames *frames, ab_report *report);
+ab_status ab_frames_contacts_begin(ab_frames *frames, ab_report *report);
+/* Puts the groups of one frame into it. */
+ab_status ab_frames_contacts_fill(ab_frames *frames, const ab_contact_totals *contacts, hid_t frame, ab_report *report);
+ab_status ab_frames_contacts_xdmf(ab_frames *frames, const ab_contact_totals *contacts, size_t number, ab_report *report);
+ab_status ab_frames_contacts_finish(ab_frames *frames, ab_report *report);
+void ab_frames_contacts_destroy(ab_frames *frames);
 
 /* ---- results_gather.c ---- */
 

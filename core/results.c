@@ -124,7 +124,7 @@ static ab_status sample(ab_results *results, const ab_state_view *view, bool las
 static ab_status frame(ab_results *results, const ab_state_view *view, ab_report *report) {
     AB_TRY(ab_history_flush(results->history, report));
     if (results->frames == NULL || results->frame_step == view->step) return AB_OK;
-    AB_TRY(ab_frames_write(results->frames, view->time, view->step, report));
+    AB_TRY(ab_frames_write(results->frames, view->contacts, view->time, view->step, report));
     results->frame_step = view->step;
     return AB_OK;
 }

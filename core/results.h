@@ -16,6 +16,11 @@ typedef struct ab_contact_totals {      /* of one contact of the scene */
     size_t failures;                    /* what the finder could not decide, so far */
     double peak_pressure;               /* Pa, largest normal impulse / (dt * area) of a point in the last step */
     double area;                        /* m (of length, in plane strain), sum of the areas of the points with an impulse */
+    const ab_points *list;              /* the points of the last step, until the next one; NULL before the first */
+    /* list->count each: N, force on the second body along the normal and along the tangent (-normal.y, normal.x); m/s, velocity of the first body against the
+     * second along that tangent */
+    const double *normal, *tangential, *slip;
+    const double *pressure, *shear; /* Pa; NULL: force over area */
 } ab_contact_totals;
 
 typedef struct ab_state_view { /* what monitors and writers look at; borrowed from the scheduler */

@@ -53,6 +53,11 @@ static int gather_frame(ab_frames *frames, size_t number, hid_t into) {
         const char *body = frames->scene->bodies[b].name;
         result = H5Ocopy(source, body, target, body, H5P_DEFAULT, H5P_DEFAULT);
     }
+    for (size_t k = 0; frames->scene->output_contact && k < frames->scene->contact_count && result >= 0; k++) {
+        char contact[CONTACT_NAME];
+        ab_frames_contact_name(k, contact);
+        result = H5Ocopy(source, contact, target, contact, H5P_DEFAULT, H5P_DEFAULT);
+    }
     if (result >= 0) result = ab_frames_cloud(frames, number, name, target);
     if (source >= 0) H5Gclose(source);
     if (target >= 0) H5Gclose(target);
@@ -79,6 +84,7 @@ ab_status ab_frames_finish(ab_frames *frames, ab_report *report) {
     if (frames->cloud != NULL) AB_TRY(ab_xdmf_finish(frames->cloud, report));
     for (size_t b = 0; frames->of_body != NULL && b < frames->bodies; b++)
         if (frames->of_body[b] != NULL) AB_TRY(ab_xdmf_finish(frames->of_body[b], report));
+    AB_TRY(ab_frames_contacts_finish(frames, report));
     if (frames->count == 0) {
         rmdir(frames->frame_folder);
         return AB_OK;

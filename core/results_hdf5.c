@@ -89,6 +89,7 @@ ab_status ab_frames_create(const ab_scene *scene, ab_domain *const *domains, ab_
         if (strcmp(scene->bodies[b].name, "all") == 0)
             return ab_report_error(report, scene->bodies[b].mark,
                                    "a body cannot be named 'all' where there is output: results.h5 has a group of that name");
+    AB_TRY(ab_frames_contacts_check(frames, report));
     static const char *const always[] = {"position", "id", "body"};
     ab_status status = AB_OK;
     for (size_t f = 0; f < 3 && status == AB_OK; f++) status = column_add(frames, always[f], report);
@@ -147,7 +148,8 @@ ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *repo
         return ab_report_failure(report, "no memory for the output");
     AB_TRY(ab_folder_make(frames->frame_folder, report));
     ab_frames_clear(frames->frame_folder);
-    return xdmf_open(frames, report);
+    AB_TRY(xdmf_open(frames, report));
+    return ab_frames_contacts_begin(frames, report);
 }
 
 static hid_t stored_type(const column *c) { return c->integer ? H5T_STD_I64LE : H5T_IEEE_F64LE; }
@@ -257,7 +259,8 @@ static int topology_write(const ab_frames *frames, size_t body, size_t points, h
     return cells.count > 0 ? ab_hdf5_connectivity(group, &cells) : ab_hdf5_vertices(group, points, frames->rows);
 }
 
-static ab_status frame_fill(ab_frames *frames, size_t number, hid_t file, const char *name, ab_report *report) {
+static ab_status frame_fill(ab_frames *frames, const ab_contact_totals *contacts, size_t number, hid_t file, const char *name,
+                            ab_report *report) {
     const frame_record *record = &frames->records[number];
     const hid_t frame = ab_frames_group(record, name, file);
     if (frame < 0) return ab_hdf5_trouble("build a frame", report);
@@ -271,6 +274,7 @@ static ab_status frame_fill(ab_frames *frames, size_t number, hid_t file, const 
             status = ab_hdf5_trouble("build a frame", report);
         if (group >= 0) H5Gclose(group);
     }
+    if (status == AB_OK) status = ab_frames_contacts_fill(frames, contacts, frame, report);
     if (status == AB_OK && ab_frames_cloud(frames, number, name, frame) < 0) status = ab_hdf5_trouble("build a frame", report);
     H5Gclose(frame);
     return status;
@@ -316,7 +320,7 @@ static ab_status xdmf_add(ab_frames *frames, size_t number, ab_report *report) {
     return AB_OK;
 }
 
-ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *report) {
+ab_status ab_frames_write(ab_frames *frames, const ab_contact_totals *contacts, double time, long step, ab_report *report) {
     const size_t number = frames->count;
     frame_record *record = record_new(frames);
     if (record == NULL) return ab_report_failure(report, "no memory for frame %zu", number);
@@ -340,7 +344,7 @@ ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *
     H5E_BEGIN_TRY {
         const hid_t file = status == AB_OK ? ab_hdf5_create() : H5I_INVALID_HID;
         if (status == AB_OK && file < 0) status = ab_hdf5_trouble("build a frame", report);
-        if (status == AB_OK) status = frame_fill(frames, number, file, name, report);
+        if (status == AB_OK) status = frame_fill(frames, contacts, number, file, name, report);
         if (status == AB_OK) status = ab_hdf5_save(file, path, &record->bytes, report);
         if (file >= 0) H5Fclose(file);
         if (status == AB_OK) {
@@ -351,7 +355,8 @@ ab_status ab_frames_write(ab_frames *frames, double time, long step, ab_report *
     H5E_END_TRY
     free(path);
     if (status != AB_OK && frames->count == number) free(record->points);
-    return status == AB_OK ? xdmf_add(frames, number, report) : status;
+    if (status == AB_OK) status = xdmf_add(frames, number, report);
+    return status == AB_OK ? ab_frames_contacts_xdmf(frames, contacts, number, report) : status;
 }
 
 size_t ab_frames_count(const ab_frames *frames) { return frames == NULL ? 0 : frames->count; }
@@ -363,6 +368,7 @@ void ab_frames_destroy(ab_frames *frames) {
     ab_xdmf_destroy(frames->cloud);
     for (size_t b = 0; frames->of_body != NULL && b < frames->bodies; b++) ab_xdmf_destroy(frames->of_body[b]);
     free(frames->of_body);
+    ab_frames_contacts_destroy(frames);
     free(frames->records);
     free(frames->values);
     free(frames->rows);

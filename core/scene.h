@@ -100,6 +100,7 @@ typedef struct ab_body_spec {
     int order;             /* AB_TRANSFER_XPIC, _FMPM: m */
     double flip;           /* AB_TRANSFER_FLIP: 1 flip, 0 pic */
     char *update;          /* "usf" | "usl" | "musl" */
+    double surface_points; /* cells between points on the outline, which touch other bodies; 0: domains of material points do */
     ab_number velocity[2]; /* formulas of x, y */
     bool gravity;
     bool has_force;
@@ -213,6 +214,7 @@ typedef struct ab_scene {
     double output_every; /* s; 0: only first and last frame when fields are asked for */
     char **output_fields;
     size_t output_field_count;
+    bool output_contact; /* contact points too */
     bool has_output, has_history;
     ab_trade_spec trade;
     struct ab_scene_private *private_; /* document, parsers, arena */

@@ -106,6 +106,20 @@ static void take_transfer(ab_scene_reader *r, const ab_node *node, const char *w
     body->order = (int)order;
 }
 
+static void take_surface(ab_scene_reader *r, const ab_node *node, const char *where, ab_body_spec *body) {
+    static const double SPACING = 1.0; /* cells, where none is given */
+    char path[AB_WHERE], *word = NULL;
+    if (node == NULL || node->kind != AB_NODE_MAP) {
+        if (ab_read_word(&r->base, &ab_section_body.keys[BODY_SURFACE], node, where, &word))
+            body->surface_points = strcmp(word, "points") == 0 ? SPACING : 0.0;
+        return;
+    }
+    const ab_node *v[SURFACE_KEYS];
+    ab_where_join(path, where, "surface");
+    if (ab_section_open(&r->base, &ab_section_surface, node, path, v) && v[SURFACE_POINTS] != NULL)
+        ab_read_number(&r->base, &ab_section_surface.keys[SURFACE_POINTS], v[SURFACE_POINTS], path, &body->surface_points);
+}
+
 enum { POINTS = 1, ELEMENTS = 2, RIGID = 4 };
 static const struct {
     const char *name;
@@ -122,6 +136,7 @@ static const unsigned belongs[BODY_KEYS] = {
     [BODY_TRANSFER] = POINTS,
     [BODY_UPDATE] = POINTS,
     [BODY_F_BAR] = POINTS,
+    [BODY_SURFACE] = POINTS,
     [BODY_VELOCITY] = POINTS | ELEMENTS | RIGID,
     [BODY_GRAVITY] = POINTS | ELEMENTS | RIGID,
     [BODY_FORCE] = POINTS | ELEMENTS,
@@ -156,6 +171,7 @@ static void take_points(ab_scene_reader *r, const ab_node *const *v, const char 
     take_fill(r, v[BODY_FILL], where, body);
     take_basis(r, v[BODY_BASIS], where, body);
     take_transfer(r, v[BODY_TRANSFER], where, body);
+    take_surface(r, v[BODY_SURFACE], where, body);
     ab_read_word(&r->base, &ab_section_body.keys[BODY_UPDATE], v[BODY_UPDATE], where, &body->update);
     char *cells = NULL;
     if (ab_read_word(&r->base, &ab_section_body.keys[BODY_F_BAR], v[BODY_F_BAR], where, &cells))

@@ -110,6 +110,9 @@ static const ab_key body[] = {
                     .help =
                         "against locking where volume is kept (nu near 0.5, plastic flow): the change of volume and the pressure are "
                         "averaged over the points of a cell, or over a patch of 3 x 3 cells, which leaves no checkerboard of pressures"},
+    [BODY_SURFACE] = {"surface", AB_KEY_WORD, .words = "domains|points", .initial = "domains",
+                      .help = "what of the body touches others: the domains of its material points, or points on its own outline, a cell "
+                              "apart; another distance is {points: 0.25}"},
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
@@ -121,13 +124,13 @@ static const ab_key body[] = {
     [BODY_FIX] = {"fix", AB_KEY_SECTION, .help = "list of parts whose velocity is given; finite-elements"},
     [BODY_MOTION] = {"motion", AB_KEY_SECTION, .help = "what of its motion is given; rigid. Without it the body is free"},
 };
-SECTION(
-    body, "bodies.NAME", body, NULL,
-    "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer`, "
-    "`update` and `f_bar` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and `motion` to rigid; "
-    "the others to all, `body_force` to all but rigid.",
-    "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
-    "0]\n");
+SECTION(body, "bodies.NAME", body, NULL,
+        "One entry a body. Each body has its own velocity field; bodies meet only through `contact`. `shape`, `fill`, `basis`, `transfer`, "
+        "`update`, `f_bar` and `surface` belong to method material-points, `mesh` and `fix` to finite-elements, `shape` or `mesh` and "
+        "`motion` to rigid; "
+        "the others to all, `body_force` to all but rigid.",
+        "bodies:\n  block:\n    method: material-points\n    material: soil\n    shape: {box: [[1, 0], [2, 1]]}\n    velocity: [\"0.1*y\", "
+        "0]\n");
 
 static const ab_key mesh[] = {
     [MESH_BOX] = {"box", AB_KEY_SECTION, .unit = "m", .help = "[[x, y], [x, y]]: lower left and upper right corner"},
@@ -261,6 +264,12 @@ static const ab_key transfer[] = {
 };
 SECTION(transfer, "bodies.NAME.transfer", transfer, NULL, "As a mapping, in place of a word: one of these keys.", "transfer: {xpic: 3}\n");
 
+static const ab_key surface[] = {
+    [SURFACE_POINTS] = {"points", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_REQUIRED | AB_KEY_RANGE, .min = 0.1, .max = 4,
+                        .help = "distance of points on the outline, in cells"},
+};
+SECTION(surface, "bodies.NAME.surface", surface, NULL, "As a mapping, in place of a word.", "surface: {points: 0.25}\n");
+
 static const ab_key contact[] = {
     [CONTACT_BODIES] = {"bodies", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "two names [a, b], or all for every pair"},
     [CONTACT_ALGORITHM] = {"algorithm", AB_KEY_NAME, .flags = AB_KEY_REQUIRED,
@@ -331,9 +340,15 @@ static const ab_key output[] = {
     [OUTPUT_EVERY] = {"every", AB_KEY_NUMBER, .unit = "s", .initial = "0", .flags = AB_KEY_RANGE, .min = 0, .max = ANY,
                       .help = "time from frame to frame; 0: the first and the last only"},
     [OUTPUT_FIELDS] = {"fields", AB_KEY_SECTION, .help = "list of fields; positions are always there"},
+    [OUTPUT_CONTACT] =
+        {"contact", AB_KEY_FLAG, .initial = "false",
+         .help =
+             "true: the contact points of each contact too, with normal, gap, area, force on the second body, pressure, shear, and slip"},
 };
 SECTION(output, "output", output, NULL,
-        "Frames of results.h5. Only what is asked for is written. Besides the fields below, a state of a material by its name.",
+        "Frames of results.h5. Only what is asked for is written. Besides the fields below, a state of a material by its name. "
+        "Contact points of the step before the frame stand in a group of their own for each contact, contact_0 and on "
+        "(results_contact_0.xdmf shows them).",
         "output: {every: \"20 ms\", fields: [stress, velocity]}\n");
 
 static const ab_key expect[] = {
@@ -383,10 +398,32 @@ static const ab_key ladder[] = {
 };
 SECTION(ladder, "trade.vary[i]", ladder, NULL, "A list.", "- {set: grid.cell, values: [0.5, 0.25, 0.125]}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,  &ab_section_time,    &ab_section_grid,
-                                         &ab_section_sides,    &ab_section_material, &ab_section_body,    &ab_section_shape,
-                                         &ab_section_disc,     &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_mesh,     &ab_section_patch,   &ab_section_arc,
-                                         &ab_section_fix,      &ab_section_motion,   &ab_section_contact, &ab_section_load,
-                                         &ab_section_where,    &ab_section_monitor,  &ab_section_history, &ab_section_output,
-                                         &ab_section_expect,   &ab_section_trade,    &ab_section_ladder,  NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,
+                                         &ab_section_damping,
+                                         &ab_section_time,
+                                         &ab_section_grid,
+                                         &ab_section_sides,
+                                         &ab_section_material,
+                                         &ab_section_body,
+                                         &ab_section_shape,
+                                         &ab_section_disc,
+                                         &ab_section_ring,
+                                         &ab_section_fill,
+                                         &ab_section_basis,
+                                         &ab_section_transfer,
+                                         &ab_section_surface,
+                                         &ab_section_mesh,
+                                         &ab_section_patch,
+                                         &ab_section_arc,
+                                         &ab_section_fix,
+                                         &ab_section_motion,
+                                         &ab_section_contact,
+                                         &ab_section_load,
+                                         &ab_section_where,
+                                         &ab_section_monitor,
+                                         &ab_section_history,
+                                         &ab_section_output,
+                                         &ab_section_expect,
+                                         &ab_section_trade,
+                                         &ab_section_ladder,
+                                         NULL};

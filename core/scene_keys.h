@@ -41,6 +41,7 @@ enum {
     BODY_TRANSFER,
     BODY_UPDATE,
     BODY_F_BAR,
+    BODY_SURFACE,
     BODY_VELOCITY,
     BODY_GRAVITY,
     BODY_FORCE,
@@ -58,13 +59,14 @@ enum { SHAPE_BOX, SHAPE_DISC, SHAPE_RING, SHAPE_POLYGON, SHAPE_HOLES, SHAPE_UNIO
 enum { ROUND_CENTER, ROUND_RADIUS, ROUND_INNER, ROUND_KEYS };
 enum { FILL_RULE, FILL_PER_CELL, FILL_POINTS, FILL_SEED, FILL_TOLERANCE, FILL_ITERATIONS, FILL_KEYS };
 enum { BASIS_GIMP, BASIS_KEYS };
+enum { SURFACE_POINTS, SURFACE_KEYS };
 enum { TRANSFER_FLIP, TRANSFER_XPIC, TRANSFER_FMPM, TRANSFER_KEYS };
 enum { CONTACT_BODIES, CONTACT_ALGORITHM, CONTACT_RESPONSE, CONTACT_KEYS };
 enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_PRESSURE, LOAD_AT, LOAD_FORCE, LOAD_KEYS };
 enum { WHERE_ALL, WHERE_SIDE, WHERE_X, WHERE_Y, WHERE_KEYS };
 enum { MONITOR_NAME, MONITOR_BODY, MONITOR_CONTACT, MONITOR_VALUE, MONITOR_AT, MONITOR_OVER, MONITOR_WHERE, MONITOR_MINUS, MONITOR_KEYS };
 enum { HISTORY_EVERY, HISTORY_KEYS };
-enum { OUTPUT_EVERY, OUTPUT_FIELDS, OUTPUT_KEYS };
+enum { OUTPUT_EVERY, OUTPUT_FIELDS, OUTPUT_CONTACT, OUTPUT_KEYS };
 enum {
     EXPECT_NAME,
     EXPECT_MONITOR,
@@ -85,7 +87,8 @@ enum { LADDER_SET, LADDER_VALUES, LADDER_NAME, LADDER_KEYS };
 extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material,
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
-    ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade, ab_section_ladder;
+    ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
+    ab_section_ladder;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

@@ -144,5 +144,8 @@ void ab_scene_take_output(ab_scene_reader *r, const ab_node *node) {
     r->scene->has_output = true;
     if (!ab_section_open(&r->base, &ab_section_output, node, "output", v)) return;
     ab_read_number(&r->base, &ab_section_output.keys[OUTPUT_EVERY], v[OUTPUT_EVERY], "output", &r->scene->output_every);
+    ab_read_flag(&r->base, &ab_section_output.keys[OUTPUT_CONTACT], v[OUTPUT_CONTACT], "output", &r->scene->output_contact);
+    if (r->scene->output_contact && r->scene->contact_count == 0)
+        ab_report_error(r->base.report, v[OUTPUT_CONTACT]->mark, "output.contact: the scene has no contact; leave it out");
     if (v[OUTPUT_FIELDS] != NULL) take_fields(r, v[OUTPUT_FIELDS]);
 }

@@ -19,33 +19,44 @@ static const double SHORTEST = 0.125, LONGEST = 1.0; /* of a cell; faces that ge
 static const double DRAWN = 3.0; /* times the displacement gradient of a step: share by which a vertex nears its arm's end */
 static const double FULL = 0.1;  /* of a point's mass: nodes with less fade */
 
-struct mpm_outline {
-    mpm_loops loops;
-    size_t capacity, ld;
-    double *position; /* rows of ld */
-    size_t *start;
-    uint32_t *dof;
-    double *weight;
-    uint32_t *vertex, *beside; /* of the faces */
-};
-
 void mpm_outline_destroy(struct mpm_outline *o) {
     if (!o) return;
     mpm_loops_clear(&o->loops);
+    mpm_touching_destroy(o->touching);
     free(o->position), free(o->start), free(o->dof), free(o->weight), free(o->vertex), free(o->beside), free(o);
 }
 
 size_t mpm_outline_bytes(const struct mpm_outline *o) {
-    return o ? sizeof *o + o->loops.capacity * 65 + o->capacity * (16 + 8 + NODES * 12 + 20) : 0;
+    return o ? sizeof *o + o->loops.capacity * 65 + o->capacity * (16 + 8 + 20) + o->room * 12 + mpm_touching_bytes(o->touching) : 0;
 }
 
-/* Faces are wanted where a finder looks at surfaces and the other body is made of points too; any other body brings faces of its own. */
+/* A finder that does not look at surfaces would not see the points on them. */
+static ab_status check_finders(const mpm_body *body, ab_report *report) {
+    const ab_scene *scene = body->scene;
+    const ab_body_spec *spec = body->domain.spec;
+    for (size_t k = 0; k < scene->contact_count && spec->surface_points > 0.0; ++k) {
+        const ab_contact_spec *contact = scene->contacts + k;
+        if (contact->body[0] != body->domain.index && contact->body[1] != body->domain.index) continue;
+        if (!(contact->finder->class_.needs & AB_NEED_SURFACE))
+            return ab_report_error(report, contact->mark,
+                                   "contact by '%s' looks at the nodes of the grid and not at the surface points of body '%s'; use "
+                                   "point-to-segment, or leave surface: points out of the body",
+                                   contact->finder->class_.name, spec->name);
+    }
+    return AB_OK;
+}
+
+/* Faces are wanted where a finder looks at surfaces and the other body is made of points too; any other body brings faces of its own. Vertices that touch are wanted
+ * wherever it does. */
 static bool wants_faces(const mpm_body *body) {
     const ab_scene *scene = body->scene;
     for (size_t k = 0; k < scene->contact_count; ++k) {
         const ab_contact_spec *contact = scene->contacts + k;
         const size_t own = body->domain.index;
-        if (!(contact->finder->class_.needs & AB_NEED_SURFACE) || (contact->body[0] != own && contact->body[1] != own)) continue;
+        const uint32_t needs = contact->finder->class_.needs;
+        if (contact->body[0] != own && contact->body[1] != own) continue;
+        if (body->domain.spec->surface_points > 0.0 && (needs & AB_NEED_SURFACE)) return true;
+        if (!(needs & AB_NEED_SURFACE)) continue;
         const size_t other = contact->body[contact->body[0] == own];
         if (!strcmp(scene->bodies[other].method, body->domain.ops->method)) return true;
     }
@@ -53,15 +64,17 @@ static bool wants_faces(const mpm_body *body) {
 }
 
 ab_status mpm_outline_create(mpm_body *body, const ab_fill *fill, ab_report *report) {
+    AB_TRY(check_finders(body, report));
     if (!wants_faces(body)) return AB_OK;
     body->outline = calloc(1, sizeof *body->outline);
     if (!body->outline) return ab_report_failure(report, "body '%s': no memory for its outline", body->domain.spec->name);
     mpm_loops *loops = &body->outline->loops;
     if (!mpm_points_index(body)) return ab_report_failure(report, "body '%s': no memory for its outline", body->domain.spec->name);
-    AB_TRY(mpm_loops_create(fill, SPACING * body->h, body->domain.spec->name, loops, report));
+    const double spacing = body->domain.spec->surface_points;
+    AB_TRY(mpm_loops_create(fill, (spacing > 0.0 ? spacing : SPACING) * body->h, !(spacing > 0.0), body->domain.spec->name, loops, report));
     for (size_t k = 0; k < loops->count; ++k)
         for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] -= body->origin[c];
-    return AB_OK;
+    return spacing > 0.0 ? mpm_touching_create(body, fill, report) : AB_OK;
 }
 
 static bool grow(void *pointer, size_t count, size_t size) {
@@ -75,10 +88,16 @@ static bool reserve(struct mpm_outline *o) {
     if (count <= o->capacity) return true;
     const size_t n = (count + count / 2 + 8) / 8 * 8;
     if (!grow(&o->position, 2 * n, sizeof(double)) || !grow(&o->start, n + 1, sizeof *o->start) ||
-        !grow(&o->dof, NODES * n, sizeof *o->dof) || !grow(&o->weight, NODES * n, sizeof(double)) ||
         !grow(&o->vertex, 3 * n, sizeof *o->vertex) || !grow(&o->beside, 2 * n, sizeof *o->beside))
         return false;
     o->capacity = o->ld = n;
+    return true;
+}
+
+static bool reserve_stencil(struct mpm_outline *o, size_t nodes) {
+    if (nodes <= o->room) return true;
+    if (!grow(&o->dof, 2 * nodes, sizeof *o->dof) || !grow(&o->weight, 2 * nodes, sizeof(double))) return false;
+    o->room = 2 * nodes;
     return true;
 }
 
@@ -115,7 +134,7 @@ static ab_status lost(const mpm_body *body, const double x[2], ab_report *report
 
 ab_status mpm_outline_move(mpm_body *body, const ab_step *step, ab_report *report) {
     struct mpm_outline *o = body->outline;
-    if (!o) return AB_OK;
+    if (!o || o->touching) return AB_OK;
     mpm_loops *loops = &o->loops;
     for (size_t k = 0; k < loops->count; ++k) {
         uint32_t dof[NODES];
@@ -166,7 +185,7 @@ static bool follow_point(const mpm_body *body, uint32_t id, double dt, double ar
 }
 
 void mpm_outline_follow(mpm_body *body, const ab_step *step) {
-    if (!body->outline) return;
+    if (!body->outline || body->outline->touching) return;
     mpm_loops *loops = &body->outline->loops;
     for (size_t k = 0; k < loops->count; ++k) {
         const uint32_t *id = loops->point + 2 * k;
@@ -189,13 +208,18 @@ ab_status mpm_faces(ab_domain *domain, ab_surface *surface, ab_report *report) {
     if (!o) return AB_OK;
     const mpm_loops *loops = &o->loops;
     if (!reserve(o)) return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
+    const size_t most = o->touching ? mpm_touching_most_nodes() : NODES;
+    if (o->touching && !mpm_touching_place(body)) return lost(body, loops->x, report);
     o->start[0] = 0;
     for (size_t k = 0; k < loops->count; ++k) {
         const double *x = loops->x + 2 * k;
         const size_t at = o->start[k];
-        const int count = stencil_of(body, x, o->dof + at, o->weight + at);
+        if (!reserve_stencil(o, at + most))
+            return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
+        const size_t count = o->touching ? mpm_touching_stencil(body, k, o->dof + at, o->weight + at)
+                                         : (size_t)stencil_of(body, x, o->dof + at, o->weight + at);
         if (count == 0) return lost(body, x, report);
-        o->start[k + 1] = at + (size_t)count;
+        o->start[k + 1] = at + count;
         o->position[k] = x[0];
         o->position[o->ld + k] = x[1];
         o->vertex[3 * k] = (uint32_t)k;

@@ -4,7 +4,7 @@
 #ifndef AB_MPM_OUTLINE_H
 #define AB_MPM_OUTLINE_H
 
-#include "mpm/fill.h"
+#include "mpm/body.h"
 
 typedef struct mpm_loops {
     size_t count, capacity;
@@ -16,9 +16,32 @@ typedef struct mpm_loops {
     double *arm;     /* 2 for each of those, m: from the point to the vertex */
 } mpm_loops;
 
-/* Loops from the pieces of outline that a fill leaves, in vertices about `spacing` apart (corners always; smooth stretches evenly, so that the loops enclose the
- * area of the outline to second order). An error where the pieces do not close. */
-ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body, mpm_loops *loops, ab_report *);
+struct mpm_outline {
+    mpm_loops loops;
+    struct mpm_touching *touching; /* vertices that touch other bodies in place of the points' domains (surface: points); else NULL */
+    size_t capacity, ld;
+    double *position;    /* rows of ld */
+    size_t *start, room; /* room: in dof and weight */
+    uint32_t *dof;
+    double *weight;
+    uint32_t *vertex, *beside; /* of the faces */
+};
+
+/* surface_points.c: vertices that touch. Each is a fixed combination of the material points around it, x = sum a x_p with sum a = 1, and so are its velocity and what
+ * it is pushed by. */
+ab_status mpm_touching_create(mpm_body *, const ab_fill *, ab_report *);
+bool mpm_touching_place(mpm_body *); /* where the vertices are now, into loops.x; false: all that one of them hung on has left */
+/* Nodes and weights of vertex k, after mpm_touching_place: they add up to 1 and their centre is the vertex. Their number, mpm_touching_most_nodes() at most; 0: what
+ * it hung on is torn apart. */
+size_t mpm_touching_stencil(const mpm_body *, size_t k, uint32_t *dof, double *weight);
+size_t mpm_touching_most_nodes(void);
+ab_status mpm_touching_points(mpm_body *, const ab_region *, ab_surface *, ab_report *); /* after mpm_faces */
+void mpm_touching_destroy(struct mpm_touching *);
+size_t mpm_touching_bytes(const struct mpm_touching *);
+
+/* Loops from the pieces of outline that a fill leaves, in vertices about `spacing` apart (corners always; smooth stretches evenly). lifted: those of
+ * smooth stretches stand a little outside, so that the loops enclose the area of the outline to second order; else on the outline. An error where the pieces do not close. */
+ab_status mpm_loops_create(const ab_fill *fill, double spacing, bool lifted, const char *body, mpm_loops *loops, ab_report *);
 void mpm_loops_clear(mpm_loops *);
 
 /* following[k], of fill->surface_count: the piece of outline that begins where piece k ends. AB_BAD_INPUT: the pieces do not close; AB_FAILED: no memory. */

@@ -210,7 +210,7 @@ static bool lift(mpm_loops *loops, size_t first) {
     return true;
 }
 
-static bool add_loop(mpm_loops *loops, const track *t, double spacing) {
+static bool add_loop(mpm_loops *loops, const track *t, double spacing, bool lifted) {
     const size_t first = loops->count;
     size_t start = 0, corners = 0;
     for (size_t k = t->count; k-- > 0;)
@@ -225,7 +225,7 @@ static bool add_loop(mpm_loops *loops, const track *t, double spacing) {
         from = to;
     }
     close_loop(loops, first);
-    return lift(loops, first);
+    return !lifted || lift(loops, first);
 }
 
 ab_status mpm_pieces_chain(const ab_fill *fill, uint32_t *following) {
@@ -246,7 +246,7 @@ ab_status mpm_pieces_chain(const ab_fill *fill, uint32_t *following) {
     return status;
 }
 
-ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body, mpm_loops *loops, ab_report *report) {
+ab_status mpm_loops_create(const ab_fill *fill, double spacing, bool lifted, const char *body, mpm_loops *loops, ab_report *report) {
     const size_t n = fill->surface_count;
     *loops = (mpm_loops){0};
     uint32_t *following = malloc((n + 1) * sizeof *following), *leading = malloc((n + 1) * sizeof *leading);
@@ -272,7 +272,7 @@ ab_status mpm_loops_create(const ab_fill *fill, double spacing, const char *body
         if (done[k]) continue;
         for (uint32_t at = (uint32_t)k; !done[at]; at = following[at]) done[at] = true;
         track_loop(fill, following, leading, (uint32_t)k, spacing, &t);
-        if (!add_loop(loops, &t, spacing)) status = ab_report_failure(report, "body '%s': no memory for its outline", body);
+        if (!add_loop(loops, &t, spacing, lifted)) status = ab_report_failure(report, "body '%s': no memory for its outline", body);
     }
     for (size_t k = 0; k < 2 * loops->count; ++k) { /* points: two a vertex */
         loops->arm[2 * k] = loops->x[k / 2 * 2] - fill->x[loops->point[k]];

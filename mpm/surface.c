@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "mpm/body.h"
+#include "mpm/outline.h"
 
 struct mpm_surface {
     size_t capacity, count; /* points; ld of the arrays */
@@ -139,6 +139,7 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
 
 ab_status mpm_surface_points(ab_domain *domain, const ab_region *region, ab_surface *surface, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
+    if (body->outline && body->outline->touching) return mpm_touching_points(body, region, surface, report);
     if (!reserve_tiles(body)) goto no_memory;
     struct mpm_surface *s = body->surface;
     s->count = 0;

@@ -16,7 +16,7 @@ static drawn *draw(const ab_shape_spec *shape, ab_fill_rule rule, int per_cell, 
     const double origin[2] = {0, 0};
     d->report = ab_report_create();
     must(d, ab_fill_create(shape, rule, per_cell, cell, origin, "b", &d->fill, d->report));
-    must(d, mpm_loops_create(d->fill, 0.5 * cell, "b", &d->loops, d->report));
+    must(d, mpm_loops_create(d->fill, 0.5 * cell, true, "b", &d->loops, d->report));
     return d;
 }
 
@@ -180,7 +180,7 @@ static void test_an_outline_that_does_not_close_is_refused(void **state) {
     drawn *d = draw(&box, AB_FILL_REGULAR, 4, 0.5);
     d->fill->surface_count -= 2;
     mpm_loops loops;
-    assert_int_not_equal(mpm_loops_create(d->fill, 0.25, "soil", &loops, d->report), AB_OK);
+    assert_int_not_equal(mpm_loops_create(d->fill, 0.25, true, "soil", &loops, d->report), AB_OK);
     assert_non_null(strstr(ab_report_text(d->report, 0), "'soil': its outline does not close"));
     erase(d);
 }
