@@ -22,6 +22,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_read_word(&r->base, &key[TOP_SPACE], v[TOP_SPACE], "", &space);
     ab_read_vector(&r->base, &key[TOP_GRAVITY], v[TOP_GRAVITY], "", scene->gravity);
     ab_scene_take_damping(r, v[TOP_DAMPING]);
+    ab_scene_take_watchdog(r, v[TOP_WATCHDOG]);
     ab_scene_take_time(r, v[TOP_TIME]);
     ab_scene_take_grid(r, v[TOP_GRID]);
     ab_scene_take_materials(r, v[TOP_MATERIALS]);
@@ -40,6 +41,8 @@ static void set_defaults(ab_scene *scene) {
     scene->space = AB_SPACE_PLANE_STRAIN;
     scene->dimension = 2;
     scene->damping_until = INFINITY;
+    scene->watch = true;
+    scene->watch_energy = 0.5;
     scene->time_cfl = 0.5;
     scene->history_every = 1;
     scene->has_history = true;

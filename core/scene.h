@@ -192,6 +192,8 @@ typedef struct ab_scene {
     ab_space space;
     int dimension;
     ab_number gravity[2];                /* m/s2, formulas of t */
+    bool watch;                          /* end a run that makes energy */
+    double watch_energy;                 /* as a part of what was put into it */
     double damping_local, damping_until; /* until: s, INFINITY when always */
     double time_end, time_dt, time_cfl;  /* dt 0: by cfl; cfl 0: by dt */
     ab_mark mark_time, mark_grid;

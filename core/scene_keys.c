@@ -35,6 +35,7 @@ static const ab_key top[] = {
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_LATER, .help = "leave the key out"},
+    [TOP_WATCHDOG] = {"watchdog", AB_KEY_SECTION, .help = "when a run is ended because it makes energy"},
     [TOP_TRADE] = {"trade", AB_KEY_SECTION, .help = "settings that `abut trade` tries; a run does not look at them"},
 };
 SECTION(top, "The scene", top, NULL, "Top level of the file.",
@@ -373,6 +374,16 @@ SECTION(expect, "expect[i]", expect, NULL,
         "A list. Each compares a monitor or a column with a reference; `abut run --strict` exits 3 when one misses.",
         "expect:\n  - {name: slides, monitor: block_x, reference: \"0.5*a*t^2\", norm: l2, tolerance: 0.02}\n");
 
+static const ab_key watchdog[] = {
+    [WATCHDOG_ENERGY] = {"energy", AB_KEY_NUMBER, .unit = "1", .initial = "0.5", POSITIVE,
+                         .help = "the ledger's remainder, as a part of the energy put into the run (what it starts with, work from "
+                                 "outside, weight), above which it is ended"},
+    [WATCHDOG_STOP] = {"stop", AB_KEY_FLAG, .initial = "true", .help = "false: it goes on, and the closing table says how much was made"},
+};
+SECTION(watchdog, "watchdog", watchdog, NULL,
+        "A run that goes on making energy has no result; it is ended, with the body, the place, the likely cause and the remedy.",
+        "watchdog: {energy: 0.1}\n");
+
 static const ab_key trade[] = {
     [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders; every combination is run"},
     [TRADE_ERROR] = {"error", AB_KEY_SECTION,
@@ -411,7 +422,10 @@ const ab_section *const ab_sections[] = {&ab_section_top,
                                          &ab_section_fill,
                                          &ab_section_basis,
                                          &ab_section_transfer,
+<<<<<<< HEAD
                                          &ab_section_surface,
+=======
+>>>>>>> 7c87d56 (A watchdog ends a run that makes energy, and says where, why most likely, and what to do)
                                          &ab_section_mesh,
                                          &ab_section_patch,
                                          &ab_section_arc,
@@ -426,4 +440,8 @@ const ab_section *const ab_sections[] = {&ab_section_top,
                                          &ab_section_expect,
                                          &ab_section_trade,
                                          &ab_section_ladder,
+<<<<<<< HEAD
+=======
+                                         &ab_section_watchdog,
+>>>>>>> 7c87d56 (A watchdog ends a run that makes energy, and says where, why most likely, and what to do)
                                          NULL};

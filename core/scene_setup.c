@@ -54,6 +54,14 @@ void ab_scene_take_damping(ab_scene_reader *r, const ab_node *node) {
     ab_read_number(&r->base, &ab_section_damping.keys[DAMPING_UNTIL], v[DAMPING_UNTIL], "damping", &r->scene->damping_until);
 }
 
+void ab_scene_take_watchdog(ab_scene_reader *r, const ab_node *node) {
+    if (node == NULL) return;
+    const ab_node *v[WATCHDOG_KEYS];
+    if (!ab_section_open(&r->base, &ab_section_watchdog, node, "watchdog", v)) return;
+    ab_read_number(&r->base, &ab_section_watchdog.keys[WATCHDOG_ENERGY], v[WATCHDOG_ENERGY], "watchdog", &r->scene->watch_energy);
+    ab_read_flag(&r->base, &ab_section_watchdog.keys[WATCHDOG_STOP], v[WATCHDOG_STOP], "watchdog", &r->scene->watch);
+}
+
 void ab_scene_take_time(ab_scene_reader *r, const ab_node *node) {
     if (node == NULL) return;
     ab_scene *scene = r->scene;

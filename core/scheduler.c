@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/plan.h"
 #include "core/progress.h"
+#include "core/watchdog.h"
 
 static const double MOST_STEPS = 1e12; /* of a run; more would take years */
 static const double COLLAPSED = 1e-9;  /* of the first limit of the step: a run that has come to this does not end */
@@ -90,6 +91,8 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     ab_schedule_look(s);
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
+    for (size_t b = 0; b < s->body_count; ++b)
+        for (int c = 0; c < 3; ++c) s->watch_momentum[c] += s->motion[b].momentum[c];
     s->dt = choose_dt(s);
     s->first_critical_dt = s->critical_dt;
     if (!(scene->time_dt > 0.0) && isinf(s->critical_dt)) {
@@ -290,6 +293,7 @@ static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progr
         TIMED(PHASE_RESULTS, status = ab_results_step(results, &view, report));
         AB_TRY(status);
         ab_progress_step(progress, &view);
+        AB_TRY(ab_watchdog_step(s, report));
     }
     return AB_OK;
 }

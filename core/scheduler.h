@@ -32,6 +32,9 @@ typedef struct ab_schedule { /* a scene on its way through time */
     double total_now, total_start;         /* J: all terms of the ledger */
     size_t points, nodes, elements, rigid; /* what a step goes over: ab_run_facts */
     double phase_seconds[8];
+    double watch_external, watch_potential; /* J: the largest so far; see watchdog.h */
+    double watch_momentum[3];               /* kg m/s, of all bodies at the start */
+    int watch_count;                        /* steps on end with too much energy made */
 } ab_schedule;
 
 ab_status ab_schedule_create(const ab_scene *, const ab_run_options *, ab_schedule **, ab_report *);
