@@ -262,8 +262,9 @@ static ab_status make_layer(fem_body *body, double depth, bool keep, ab_report *
 }
 
 ab_status fem_inner_create(fem_body *body, ab_report *report) {
-    AB_TRY(make_layer(body, DEPTH, true, report));
     AB_TRY(fem_trace_create(body->scene, body->domain.spec->name, body->elastic.lambda + 2.0 * body->elastic.mu, &body->trace, report));
+    AB_TRY(
+        make_layer(body, DEPTH + 2.0 * (fem_trace_reach(body->trace) - 1.0), true, report)); /* points and nodes reach further on splines */
     return fem_inner_follow(body, 0, report);
 }
 

@@ -20,7 +20,8 @@ static bool wants_trace(const rigid_body *body) {
 }
 
 static bool inner_create(rigid_body *body, double cell) {
-    if (!rigid_layer_create(&body->outline, POINTS_EVERY * cell, LAYER * cell, &body->layer)) return false;
+    const double depth = (LAYER + 2.0 * (fem_trace_reach(body->trace) - 1.0)) * cell; /* points and nodes reach further on splines */
+    if (!rigid_layer_create(&body->outline, POINTS_EVERY * cell, depth, &body->layer)) return false;
     const size_t count = body->layer.count;
     fem_inner *in = &body->inner;
     in->count = in->ld = count;

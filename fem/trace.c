@@ -27,6 +27,7 @@ typedef struct tile {
 struct fem_trace {
     const char *body;
     double h, inverse_h, modulus;
+    int width; /* nodes of a point per direction: 2 hats; 3, 4 quadratic and cubic splines */
     bool saw_inmost;
     /* tiles, ascending */
     size_t tile_count, tile_capacity, key_capacity;
@@ -57,6 +58,23 @@ static bool grow(void *pointer, size_t count, size_t size) {
     return more != NULL;
 }
 
+/* Points are seen by as many nodes as those of the bodies of material points they may touch: a node that such a body has and this one has not is not shared, and
+ * its part of the contact force would be missing in the other body. */
+static int width_of(const ab_scene *scene, const char *body) {
+    int width = 2;
+    for (size_t k = 0; k < scene->contact_count; ++k)
+        for (int side = 0; side < 2; ++side) {
+            const ab_body_spec *own = scene->bodies + scene->contacts[k].body[side],
+                               *other = scene->bodies + scene->contacts[k].body[!side];
+            if (strcmp(own->name, body) || !other->basis) continue;
+            if (!strcmp(other->basis, "bspline2") && width < 3) width = 3;
+            if (!strcmp(other->basis, "bspline3")) width = 4;
+        }
+    return width;
+}
+
+double fem_trace_reach(const fem_trace *t) { return 0.5 * t->width; }
+
 ab_status fem_trace_create(const ab_scene *scene, const char *body, double modulus, fem_trace **trace, ab_report *report) {
     *trace = NULL;
     if (!(scene->grid_cell > 0.0))
@@ -68,6 +86,7 @@ ab_status fem_trace_create(const ab_scene *scene, const char *body, double modul
     t->h = scene->grid_cell;
     t->inverse_h = 1.0 / t->h;
     t->modulus = modulus;
+    t->width = width_of(scene, body);
     *trace = t;
     return AB_OK;
 }
@@ -144,18 +163,25 @@ static bool want(fem_trace *t, uint64_t key, uint64_t *last) {
     return true;
 }
 
+/* Tiles around its own, from low to high per direction, that hold nodes of a point in this cell of its tile. */
+static void spread_of(const fem_trace *t, uint32_t place, int low[2], int high[2]) {
+    const int at[2] = {(int)place % AB_TILE, (int)place / AB_TILE}, before = t->width > 2 ? 1 : 0, behind = t->width > 2 ? 2 : 1;
+    for (int c = 0; c < 2; ++c) low[c] = at[c] < before ? -1 : 0, high[c] = at[c] + behind >= AB_TILE ? 1 : 0;
+}
+
 /* The tiles of all nodes that some point reaches. False: no memory. */
 static bool list_tiles(fem_trace *t) {
-    uint64_t last[4] = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX};
+    uint64_t last[9];
+    for (int s = 0; s < 9; ++s) last[s] = UINT64_MAX;
     t->wanted_count = 0;
     for (size_t q = 0; q < t->point_count; ++q) {
         uint32_t place;
         const uint64_t home = home_of(ab_tile_x(t->cell[q]), ab_tile_y(t->cell[q]), &place);
-        const bool right = place % AB_TILE == AB_TILE - 1, up = place / AB_TILE == AB_TILE - 1;
-        const int32_t tx = ab_tile_x(home), ty = ab_tile_y(home);
-        if (!want(t, home, last) || (right && !want(t, ab_tile_key(tx + 1, ty), last + 1)) ||
-            (up && !want(t, ab_tile_key(tx, ty + 1), last + 2)) || (right && up && !want(t, ab_tile_key(tx + 1, ty + 1), last + 3)))
-            return false;
+        int low[2], high[2];
+        spread_of(t, place, low, high);
+        for (int dy = low[1]; dy <= high[1]; ++dy)
+            for (int dx = low[0]; dx <= high[0]; ++dx)
+                if (!want(t, ab_tile_key(ab_tile_x(home) + dx, ab_tile_y(home) + dy), last + (dy + 1) * 3 + dx + 1)) return false;
     }
     if (t->wanted_count) qsort(t->wanted, t->wanted_count, sizeof *t->wanted, compare_keys);
     size_t unique = 0;
@@ -191,8 +217,11 @@ static bool place_points(fem_trace *t) {
             if (number < 0) return false;
         }
         const int32_t *around = t->tiles[number].around;
-        const bool right = place % AB_TILE == AB_TILE - 1, up = place / AB_TILE == AB_TILE - 1;
-        if ((right && around[5] < 0) || (up && around[7] < 0) || (right && up && around[8] < 0)) return false;
+        int low[2], high[2];
+        spread_of(t, place, low, high);
+        for (int dy = low[1]; dy <= high[1]; ++dy)
+            for (int dx = low[0]; dx <= high[0]; ++dx)
+                if (around[(dy + 1) * 3 + dx + 1] < 0) return false;
         t->slot[q] = (uint32_t)number * AB_TILE_NODES + place;
     }
     return true;
@@ -208,6 +237,24 @@ static void sort_points(fem_trace *t) {
     for (size_t q = 0; q < t->point_count; ++q) t->order[start[t->slot[q]]++] = (uint32_t)q;
     for (size_t k = cells; k > 0; --k) start[k] = start[k - 1];
     start[0] = 0;
+}
+
+/* The points that can reach a node stand in the four cells around it (sixteen, where the functions are wider): places in `order`; cells from left to right, then
+ * upwards. Their number. */
+static int cells_around(const fem_trace *t, uint32_t node, uint32_t first[16], uint32_t last[16]) {
+    const uint32_t home = node / AB_TILE_NODES;
+    const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE, side = t->width > 2 ? 4 : 2;
+    for (int c = 0; c < side * side; ++c) {
+        const int ci = i - side / 2 + c % side, cj = j - side / 2 + c / side, dx = ci < 0 ? -1 : ci / AB_TILE,
+                  dy = cj < 0 ? -1 : cj / AB_TILE;
+        const int32_t k = dx || dy ? t->tiles[home].around[(dy + 1) * 3 + dx + 1] : (int32_t)home;
+        first[c] = last[c] = 0;
+        if (k < 0) continue;
+        const uint32_t *start = t->cell_start + (size_t)k * AB_TILE_NODES + (cj - dy * AB_TILE) * AB_TILE + ci - dx * AB_TILE;
+        first[c] = start[0];
+        last[c] = start[1];
+    }
+    return side * side;
 }
 
 /* Values of the hat functions of the two nodes of a cell in one direction, at s cells from the grid's corner; i: the first node. */
@@ -256,6 +303,40 @@ static void assemble(fem_trace *t, size_t k) {
     if (corner) mass[0] += corner[AB_TILE * PATCH + AB_TILE];
 }
 
+/* Value and slope at u cells from a node of the function of this width. */
+static void weigh(const fem_trace *t, double u, double *n, double *slope) {
+    const double a = fabs(u), sign = u < 0.0 ? -1.0 : 1.0;
+    if (t->width == 3) {
+        const double rest = ab_larger(1.5 - a, 0.0);
+        *n = a < 0.5 ? 0.75 - a * a : 0.5 * rest * rest;
+        *slope = a < 0.5 ? -2.0 * u : -sign * rest;
+    } else {
+        const double rest = ab_larger(2.0 - a, 0.0);
+        *n = a < 1.0 ? 2.0 / 3.0 - a * a * (1.0 - 0.5 * a) : rest * rest * rest / 6.0;
+        *slope = sign * (a < 1.0 ? a * (1.5 * a - 2.0) : -0.5 * rest * rest);
+    }
+}
+
+/* Masses of a tile's nodes from the points around each. */
+static void gather(fem_trace *t, const fem_inner *inner, size_t k) {
+    const double *x = inner->position, *y = x + inner->ld;
+    for (uint32_t n = 0; n < AB_TILE_NODES; ++n) {
+        const double at[2] = {ab_tile_x(t->key[k]) * AB_TILE + (int)n % AB_TILE, ab_tile_y(t->key[k]) * AB_TILE + (int)n / AB_TILE};
+        uint32_t first[16], last[16];
+        double mass = 0.0;
+        const int cells = cells_around(t, (uint32_t)k * AB_TILE_NODES + n, first, last);
+        for (int c = 0; c < cells; ++c)
+            for (uint32_t s = first[c]; s < last[c]; ++s) {
+                const uint32_t q = t->order[s];
+                double nx, ny, slope;
+                weigh(t, x[q] * t->inverse_h - at[0], &nx, &slope);
+                weigh(t, y[q] * t->inverse_h - at[1], &ny, &slope);
+                mass += nx * ny * inner->mass[q];
+            }
+        t->mass[k * AB_TILE_NODES + n] = mass;
+    }
+}
+
 ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *report) {
     const size_t count = inner->count;
     t->saw_inmost = false;
@@ -279,6 +360,11 @@ ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *repo
         if (!place_points(t) && (!list_tiles(t) || !place_points(t))) goto no_memory;
         sort_points(t);
     }
+    if (t->width > 2) {
+#pragma omp parallel for schedule(static) if (count >= PARALLEL_FROM)
+        for (size_t k = 0; k < t->tile_count; ++k) gather(t, inner, k);
+        return AB_OK;
+    }
 #pragma omp parallel for schedule(static) if (count >= PARALLEL_FROM)
     for (size_t k = 0; k < t->tile_count; ++k) scatter(t, inner, k);
 #pragma omp parallel for schedule(static) if (count >= PARALLEL_FROM)
@@ -295,21 +381,6 @@ void fem_trace_tiles(const fem_trace *t, ab_node_tiles *tiles) {
 bool fem_trace_saw_inmost(const fem_trace *t) { return t->saw_inmost; }
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
-
-/* The points that can reach a node stand in the four cells around it: places in `order`, cells in the order left below, right below, left above, right above. */
-static void cells_around(const fem_trace *t, uint32_t node, uint32_t first[4], uint32_t last[4]) {
-    const uint32_t home = node / AB_TILE_NODES;
-    const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE;
-    for (int c = 0; c < 4; ++c) {
-        const int ci = i - 1 + c % 2, cj = j - 1 + c / 2, dx = ci < 0 ? -1 : 0, dy = cj < 0 ? -1 : 0;
-        const int32_t k = dx || dy ? t->tiles[home].around[(dy + 1) * 3 + dx + 1] : (int32_t)home;
-        first[c] = last[c] = 0;
-        if (k < 0) continue;
-        const uint32_t *start = t->cell_start + (size_t)k * AB_TILE_NODES + (cj - dy * AB_TILE) * AB_TILE + ci - dx * AB_TILE;
-        first[c] = start[0];
-        last[c] = start[1];
-    }
-}
 
 /* Slope of the density at a node (core/density.h), from the points in the sixteen cells that reach it: 2 numbers. Of a body whose points are a layer along its outline it is
  * right where the layer is two cells deep below the node. */
@@ -352,9 +423,9 @@ static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t 
     if (!(needs & AB_NEED_NEAR_POINTS)) return true;
     size_t near = 0;
     for (size_t k = 0; k < count; ++k) {
-        uint32_t first[4], last[4];
-        cells_around(t, nodes[k], first, last);
-        for (int c = 0; c < 4; ++c) near += last[c] - first[c];
+        uint32_t first[16], last[16];
+        const int cells = cells_around(t, nodes[k], first, last);
+        for (int c = 0; c < cells; ++c) near += last[c] - first[c];
     }
     if (near > t->near_capacity) {
         const size_t n = (2 * near + 64) & ~(size_t)7;
@@ -394,15 +465,22 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
     const double *x = inner->position, *y = x + inner->ld;
     const double at[2] = {t->position[k], t->position[ld + k]};
     double gradient[2] = {0.0}, area[2] = {0.0}, mass = 0.0;
-    uint32_t first[4], last[4];
-    cells_around(t, node, first, last);
-    for (int c = 0; c < 4; ++c) {
+    uint32_t first[16], last[16];
+    const int cells = cells_around(t, node, first, last);
+    const bool wide = t->width > 2;
+    for (int c = 0; c < cells; ++c) {
         const double slope[2] = {c % 2 ? -t->inverse_h : t->inverse_h, c / 2 ? -t->inverse_h : t->inverse_h};
         for (uint32_t s = first[c]; s < last[c]; ++s) {
             const uint32_t q = t->order[s];
-            const double nx = ab_larger(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0),
-                         ny = ab_larger(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
-            const double m = inner->mass[q], v = inner->volume[q], gx = slope[0] * ny, gy = slope[1] * nx, value = nx * ny;
+            double nx, ny, sx = slope[0], sy = slope[1];
+            if (wide) {
+                weigh(t, (x[q] - at[0]) * t->inverse_h, &nx, &sx), sx *= t->inverse_h;
+                weigh(t, (y[q] - at[1]) * t->inverse_h, &ny, &sy), sy *= t->inverse_h;
+            } else {
+                nx = ab_larger(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0);
+                ny = ab_larger(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
+            }
+            const double m = inner->mass[q], v = inner->volume[q], gx = sx * ny, gy = sy * nx, value = nx * ny;
             gradient[0] += m * gx;
             gradient[1] += m * gy;
             area[0] += v * gx;

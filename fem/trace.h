@@ -22,6 +22,8 @@ typedef struct
 
 ab_status fem_trace_create(const ab_scene *, const char *body, double modulus, fem_trace **, ab_report *);
 void fem_trace_destroy(fem_trace *);
+/* Cells: farther away in some direction a node gets nothing of a point. 1, or what the splines of bodies that may be touched reach. */
+double fem_trace_reach(const fem_trace *);
 /* Masses on the grid of the points as they stand now: once a step, before node_tiles. Tiles are listed anew only when a point has left its cell for a tile that is
  * not listed. */
 ab_status fem_trace_update(fem_trace *, const fem_inner *, ab_report *);

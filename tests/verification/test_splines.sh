@@ -2,7 +2,7 @@
 # cost: 8
 # Quadratic and cubic B-splines in scenes of other tests: a vibrating bar on two meshes (second order, energy kept; the frequency is off by so many (kh)^2 as a lumped mass
 # makes it: with apic -1/7.4 and -1/6), a column under its own weight on a wall, a block carried through tiles, two bars that meet (first contact within a tenth of a
-# cell), one of them on another basis. test_splines.sh BUILD
+# cell), one of them on another basis, and a rigid block pushed into a bar. test_splines.sh BUILD
 set -eu
 cd "$(dirname "$0")/../.."
 build=${1:?the build folder}
@@ -64,5 +64,8 @@ for basis in ("bspline2", "bspline3"):
     within(max(error / most for error, most in impact.values()), 1)
     mixed = errors("impact_turned", bodies__a__basis=basis, bodies__b__basis="gimp")
     within(max(error / most for error, most in mixed.values()), 1)
+    print("rigid block", end=" ")  # its face on a line of nodes: it must be seen by all nodes that see the bar
+    push = errors("rigid_push", bodies__bar__basis=basis)
+    within(max(error / most for error, most in push.values()), 1)
     print()
 PYTHON
