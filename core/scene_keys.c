@@ -422,10 +422,7 @@ const ab_section *const ab_sections[] = {&ab_section_top,
                                          &ab_section_fill,
                                          &ab_section_basis,
                                          &ab_section_transfer,
-<<<<<<< HEAD
                                          &ab_section_surface,
-=======
->>>>>>> 7c87d56 (A watchdog ends a run that makes energy, and says where, why most likely, and what to do)
                                          &ab_section_mesh,
                                          &ab_section_patch,
                                          &ab_section_arc,
@@ -440,8 +437,5 @@ const ab_section *const ab_sections[] = {&ab_section_top,
                                          &ab_section_expect,
                                          &ab_section_trade,
                                          &ab_section_ladder,
-<<<<<<< HEAD
-=======
                                          &ab_section_watchdog,
->>>>>>> 7c87d56 (A watchdog ends a run that makes energy, and says where, why most likely, and what to do)
                                          NULL};

@@ -89,13 +89,8 @@ enum { LADDER_SET, LADDER_VALUES, LADDER_NAME, LADDER_KEYS };
 extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material,
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
-<<<<<<< HEAD
     ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
-    ab_section_ladder;
-=======
-    ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade, ab_section_ladder,
-    ab_section_watchdog;
->>>>>>> 7c87d56 (A watchdog ends a run that makes energy, and says where, why most likely, and what to do)
+    ab_section_ladder, ab_section_watchdog;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];
