@@ -37,6 +37,7 @@ static void check(const char *basis, const char *update, const char *material, d
     double total_volume = 0;
     for (size_t slot = 0; slot < body->block_count * 8; slot++) {
         for (int c = 0; c < 4; c++) *point_row(body, slot, ROW_STRESS + c) = start[c];
+        if (body->rows.mean_stress >= 0) *point_row(body, slot, body->rows.mean_stress) = 0.5 * (start[0] + start[1]);
         if (!is_point(body, slot)) continue;
         for (int c = 0; c < 2; c++) x0[body->ids[slot]][c] = *point_row(body, slot, ROW_X + c);
         v0[body->ids[slot]] = *point_row(body, slot, ROW_VOLUME);
@@ -91,7 +92,16 @@ static void test_stress_turns_with_the_material(void **state) {
         }
 }
 
+static void test_stress_turns_where_pressures_are_averaged(void **state) {
+    (void)state;
+    const double stress[4] = {3, -2, 1, 0.7}, zero[4] = {0};
+    check("gimp, f_bar: patch", "musl", "model: linear-elastic, E: 10, nu: 0.499", 10, stress);
+    check("linear, f_bar: cell", "usl", "model: neo-hookean, E: 10, nu: 0.499", 10, zero);
+    check("bspline2, f_bar: patch", "usf", "model: neo-hookean, E: 10, nu: 0.499", 10, zero);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stress_turns_with_the_material)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stress_turns_with_the_material),
+                                       cmocka_unit_test(test_stress_turns_where_pressures_are_averaged)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
