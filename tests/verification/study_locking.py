@@ -30,7 +30,7 @@ def percent(value):
 
 def cook_rows():
     rows = []
-    for nu, basis, cells in [("0.4999", "gimp", 8), ("0.4999", "gimp", 16), ("0.4999", "linear", 8), ("0.4999", "bspline2", 8), ("0.4999", "bspline3", 8),
+    for nu, basis, cells in [("0.4999", "gimp", 8), ("0.4999", "gimp", 16), ("0.4999", "linear", 12), ("0.4999", "bspline2", 12), ("0.4999", "bspline3", 12),
                              ("1/3", "gimp", 16), ("1/3", "gimp", 32)]:
         reference = {"1/3": {"expect[0].reference": "21.5246*small", "constants.ramp": 3000}}.get(nu, {})
         for f_bar in WAYS:
