@@ -1,5 +1,6 @@
 """Runs of abut for studies: scenes with settings, what came out of them, and figures as tables show them."""
 import csv
+import itertools
 import json
 import os
 import subprocess
@@ -9,19 +10,18 @@ import numpy as np
 
 
 class Runs:
-    """Runs scenes one after the other, each into a folder of its own; what fails is collected in `failures`."""
+    """Runs scenes, each into a folder of its own; what fails is collected in `failures`."""
 
     def __init__(self, build, limit=900):
         self.abut = f"{build}/abut"
         self.scratch = os.environ.get("ABUT_SCRATCH") or tempfile.mkdtemp()
         self.limit = limit  # s, of one run
         self.failures = []
-        self.count = 0
+        self.count = itertools.count(1)  # runs may be asked for from several threads
 
     def run(self, scene, settings, may_fail=False, keep=False):
         """Summary and columns of the history of a run, and its folder; None where it does not end, but with `keep`, which takes what there is up to there."""
-        self.count += 1
-        folder = f"{self.scratch}/{self.count}"
+        folder = f"{self.scratch}/{next(self.count)}"
         command = [self.abut, "run", scene, "--quiet", "-j", "1", "-o", folder]
         for path, value in settings.items():
             command += ["--set", f"{path}={value}"]
