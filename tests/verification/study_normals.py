@@ -231,12 +231,12 @@ def main():
     text = table("Angle between normal and exact normal in degrees, mean (largest), at nodes beside the place of contact; GIMP, 4 points a cell, gaps up to 0.1 h.", ["shape"] + METHODS, angles)
     text += "\n" + table("Error of the gap in h, mean (largest): `gap: distance` with `normal: average`, and with any other word (it is then measured along the average's direction all the same); `gap: regression` with "
                          "`average` and with `regression`.", ["shape", "distance, average", "distance, others", "regression, average", "regression, regression"], gaps)
-    text += "\n" + table("Microseconds a shared node, everything a find does included, and per cent of nodes (flats along the grid left out) where the word has no answer of its own and the average's stands in.",
+    text += "\n" + table("Microseconds a shared node, everything a find does included, and per cent of nodes (flats along the grid left out) where the normal is that of `average`, because the word has no answer of its own there (at a corner of `faces`, with no concave body for `convex`).",
                          ["normal"] + METHODS, [["cost"] + [number(np.mean(costs[m])) for m in METHODS],
                                                 ["no answer"] + [number(100 * np.mean(same[m])) if m in ("geometric", "regression", "convex", "faces", "density-gradient") else "-" for m in METHODS]])
     rows = []
     chosen = [s for s in SHAPES if s.startswith(("flat on flat", "circle of 4 h on", "circle on circle, 8", "circle of 4 h in", "corner"))and "elements" not in s]
-    for basis in () if ONLY or "--short" in sys.argv else ("linear", "gimp", "bspline2", "bspline3"):
+    for basis in () if ONLY else ("linear", "gimp", "bspline2", "bspline3"):
         for per_cell in (4, 9, 16):
             whole = defaultdict(list)
             for shape in chosen:
