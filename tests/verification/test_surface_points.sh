@@ -1,0 +1,40 @@
+#!/bin/bash
+# cost: 20
+# Bodies of points that touch by points on their own outline: impact along the grid and turned, a block at rest, a block that slides; the same bits on any number of
+# threads; and contact points in the results. test_surface_points.sh BUILD
+set -u
+build=${1:?the build folder}
+scratch=${ABUT_SCRATCH:-$(mktemp -d)}
+count=0 missed=0
+variant() { # what, scene, settings of --set
+    local what=$1 scene=$2 set=() status
+    shift 2
+    for s in "$@"; do set+=(--set "$s"); done
+    "$build/abut" run tests/verification/$scene.yaml --quiet -j "${threads:-1}" --strict -o "$scratch/$((++count))" "${set[@]}" 2>"$scratch/$count.log"
+    status=$?
+    if [ $status -eq "${wanted:-0}" ]; then
+        echo "passed  $what"
+    else
+        missed=$((missed + 1))
+        echo "MISSED  $what (exit $status)"
+        cat "$scratch/$count.log"
+        [ -f "$scratch/$count/summary.json" ] && python3 tests/verification/expects.py "$scratch/$count/summary.json" | grep '^MISSED' | sed 's/^/        /'
+    fi
+}
+both=(bodies.a.surface=points bodies.b.surface=points 'contact[0].algorithm=point-to-segment')
+variant "impact" impact "${both[@]}"
+variant "impact, turned" impact_turned "${both[@]}"
+one=$count
+variant "impact, turned, points half a cell apart" impact_turned "${both[@]:2}" 'bodies.a.surface={points: 0.5}' 'bodies.b.surface={points: 0.5}'
+variant "impact, turned, one body by its domains" impact_turned "${both[@]:1}"
+variant "oblique impact" diagonal "${both[@]}"
+threads=2 variant "on two threads" impact_turned "${both[@]}"
+if ! cmp -s "$scratch/$one/history.csv" "$scratch/$count/history.csv"; then
+    missed=$((missed + 1))
+    echo "MISSED  two threads give other bits than one"
+fi
+variant "at rest" rest_on_segments bodies.block.surface=points
+wanted=2 variant "multi-velocity is refused" impact_turned bodies.a.surface=points
+variant "contact points in the results" rest_on_segments bodies.block.surface=points 'output={contact: true}' time.end=0.5
+[ -f "$scratch/$count/results_contact_0.xdmf" ] || { missed=$((missed + 1)); echo "MISSED  results_contact_0.xdmf"; }
+[ $missed -eq 0 ]
