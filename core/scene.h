@@ -18,7 +18,14 @@ typedef struct ab_material_spec {
     double density;                /* kg/m3 */
 } ab_material_spec;
 
-typedef enum ab_shape_kind { AB_SHAPE_BOX = 1, AB_SHAPE_DISC, AB_SHAPE_RING, AB_SHAPE_POLYGON, AB_SHAPE_UNION } ab_shape_kind;
+typedef enum ab_shape_kind {
+    AB_SHAPE_BOX = 1,
+    AB_SHAPE_DISC,
+    AB_SHAPE_RING,
+    AB_SHAPE_POLYGON,
+    AB_SHAPE_UNION,
+    AB_SHAPE_MESH
+} ab_shape_kind;
 typedef struct ab_shape_spec {
     ab_shape_kind kind;
     ab_mark mark;
@@ -106,7 +113,7 @@ typedef struct ab_body_spec {
     bool has_force;
     ab_number force[2]; /* m/s2, formulas of t, x, y now and X, Y at the start */
     ab_mark mark_fill;
-    ab_mesh_spec mesh; /* finite-elements; rigid may have one instead of a shape */
+    ab_mesh_spec mesh; /* finite-elements; rigid may have one instead of a shape; of points: shape.kind is AB_SHAPE_MESH */
     ab_fix_spec *fix;
     size_t fix_count;
     ab_motion_spec motion; /* rigid */

@@ -48,6 +48,19 @@ static void take_fill(ab_scene_reader *r, const ab_node *node, const char *where
     ab_read_number(&r->base, &key[FILL_TOLERANCE], v[FILL_TOLERANCE], path, &body->fill_tolerance);
     ab_read_integer(&r->base, &key[FILL_ITERATIONS], v[FILL_ITERATIONS], path, &body->fill_rounds);
     if (!known) return;
+    if (body->shape.kind == AB_SHAPE_MESH) { /* no lattice to choose */
+        const long side = lround(sqrt((double)per_cell));
+        if (v[FILL_RULE] != NULL && body->fill != AB_FILL_GAUSS)
+            ab_report_error(
+                r->base.report, v[FILL_RULE]->mark,
+                "%s.rule is %s, but a mesh is filled by the Gauss points of its elements; write gauss, or draw the outline as a polygon",
+                path, rule);
+        body->fill = AB_FILL_GAUSS;
+        rule = ab_reader_text(&r->base, "gauss");
+        if (side * side != per_cell || side > 64)
+            ab_report_error(r->base.report, v[FILL_PER_CELL]->mark,
+                            "%s.per_cell is %ld: in each element of a mesh stand 1, 4, 9, 16 or another square up to 4096", path, per_cell);
+    }
     for (int k = FILL_POINTS; k <= FILL_ITERATIONS && body->fill != AB_FILL_CVT; k++)
         if (v[k] != NULL) leave_out(r, v[k], v[FILL_RULE], path, key[k].name, "cvt", rule);
     if (v[FILL_POINTS] != NULL && v[FILL_PER_CELL] != NULL && body->fill == AB_FILL_CVT) {
@@ -188,6 +201,21 @@ static void take_points(ab_scene_reader *r, const ab_node *const *v, const char 
             where);
 }
 
+/* A mesh that points fill. */
+static void take_shape_mesh(ab_scene_reader *r, const ab_node *node, const char *where, unsigned method, ab_body_spec *body) {
+    char path[AB_WHERE];
+    const ab_node *mesh = ab_node_find(node, "mesh");
+    ab_where_join(path, where, "mesh");
+    body->has_shape = method == POINTS && ab_scene_take_mesh(r, mesh, path, &body->mesh);
+    if (method != POINTS)
+        ab_report_error(r->base.report, mesh->mark, "%s: a rigid body has its mesh in place of a shape; write mesh: beside method:", path);
+    for (int k = MESH_F_BAR; k <= MESH_HOURGLASS && mesh->kind == AB_NODE_MAP; k++)
+        if (ab_node_find(mesh, ab_section_mesh.keys[k].name) != NULL)
+            ab_report_error(r->base.report, mesh->mark,
+                            "%s.%s belongs to finite elements; points only take places and volumes from a mesh, leave it out", path,
+                            ab_section_mesh.keys[k].name);
+}
+
 /* Where the body is at the start: by method a shape, a mesh, or one of them. */
 static void take_outline(ab_scene_reader *r, const ab_node *const *v, const char *where, unsigned method, ab_mark mark,
                          ab_body_spec *body) {
@@ -201,6 +229,7 @@ static void take_outline(ab_scene_reader *r, const ab_node *const *v, const char
     if (method == ELEMENTS && v[BODY_MESH] == NULL)
         missing(r, mark, where, "mesh", body->method, "{box: [[x, y], [x, y]], elements: [nx, ny]}, say");
     if (v[BODY_SHAPE] != NULL) body->has_shape = ab_scene_take_shape(r, v[BODY_SHAPE], ab_where_join(path, where, "shape"), &body->shape);
+    if (body->has_shape && body->shape.kind == AB_SHAPE_MESH) take_shape_mesh(r, v[BODY_SHAPE], path, method, body);
     if (v[BODY_MESH] != NULL) ab_scene_take_mesh(r, v[BODY_MESH], ab_where_join(path, where, "mesh"), &body->mesh);
 }
 

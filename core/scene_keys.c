@@ -213,7 +213,11 @@ static const ab_key shape[] = {
     [SHAPE_HOLES] = {"holes", AB_KEY_SECTION, .unit = "m",
                      .help = "beside polygon: list of polygons inside of it that are left empty, [[[x, y], ...], ...]"},
     [SHAPE_UNION] = {"union", AB_KEY_SECTION, .help = "list of shapes taken together"},
-    [SHAPE_MESH] = {"mesh", AB_KEY_LATER, .help = "write the outline as a polygon"},
+    [SHAPE_MESH] =
+        {"mesh", AB_KEY_SECTION,
+         .help =
+             "elements whose Gauss points fill it, written as `mesh` of finite elements (f_bar and hourglass apart); fill: {rule: gauss, "
+             "per_cell: 4} then means 4 in each element; material-points"},
 };
 SECTION(shape, "bodies.NAME.shape", shape, NULL, "One of these; `holes` only beside `polygon`.",
         "shape: {disc: {center: [1, 1], radius: \"50 cm\"}}\n");

@@ -225,6 +225,8 @@ static bool take_union(ab_scene_reader *r, const ab_node *node, const char *wher
         char member[AB_WHERE];
         snprintf(member, sizeof member, "%.150s[%zu]", path, i);
         good = ab_scene_take_shape(r, node->items[i], member, &shape->members[i]) && good;
+        if (good && shape->members[i].kind == AB_SHAPE_MESH)
+            good = refuse(r, node->items[i]->mark, member, "a mesh stands alone; put all elements into one mesh");
     }
     return good;
 }
@@ -239,7 +241,8 @@ bool ab_scene_take_shape(ab_scene_reader *r, const ab_node *node, const char *wh
         return refuse(r, v[SHAPE_HOLES]->mark, where, "holes stand beside a polygon; a disc with a round hole is a ring");
     if (given != 1) {
         if (node->count == 0 || given > 1)
-            refuse(r, node->mark, where, "one of box, disc, ring, polygon and union is needed; several shapes are {union: [{...}, {...}]}");
+            refuse(r, node->mark, where,
+                   "one of box, disc, ring, polygon, union and mesh is needed; several shapes are {union: [{...}, {...}]}");
         return false;
     }
     bool good = false;
@@ -258,6 +261,9 @@ bool ab_scene_take_shape(ab_scene_reader *r, const ab_node *node, const char *wh
     } else if (v[SHAPE_UNION] != NULL) {
         good = take_union(r, v[SHAPE_UNION], where, shape);
         shape->kind = AB_SHAPE_UNION;
+    } else if (v[SHAPE_MESH] != NULL) { /* read by whoever has a body for it */
+        good = true;
+        shape->kind = AB_SHAPE_MESH;
     }
     if (!good) shape->kind = 0;
     return good;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fem/element.h"
 #include "fem/mesh_parts.h"
@@ -30,6 +31,16 @@ ab_status fem_mesh_create(const ab_body_spec *spec, const char *folder, fem_mesh
     }
     *result = mesh;
     return AB_OK;
+}
+
+ab_status fem_mesh_read(const ab_scene *scene, const ab_body_spec *spec, fem_mesh **mesh, ab_report *report) {
+    const char *path = scene->path != NULL ? scene->path : "", *slash = strrchr(path, '/');
+    const size_t length = slash != NULL ? (size_t)(slash - path) + (slash == path) : 0; /* "/" stays, all else loses its last slash */
+    char *folder = length > 0 ? strndup(path, length) : strdup(".");
+    if (folder == NULL) return ab_report_failure(report, "no memory for the mesh of body '%s'", spec->name);
+    const ab_status status = fem_mesh_create(spec, folder, mesh, report);
+    free(folder);
+    return status;
 }
 
 void fem_mesh_destroy(fem_mesh *mesh) {

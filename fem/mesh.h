@@ -2,20 +2,16 @@
 #ifndef AB_FEM_MESH_H
 #define AB_FEM_MESH_H
 
+#include "core/mesh.h"
 #include "core/scene.h"
 
-typedef struct fem_mesh {
-    int nodes; /* per element: 4 or 8; corners counter-clockwise, then the middles of the sides 0-1, 1-2, 2-3, 3-0 */
-    size_t node_count, element_count;
-    double *x;                      /* 2 a node, m, as drawn */
-    uint32_t *connectivity;         /* nodes an element */
-    uint64_t *node_id, *element_id; /* as in the file, for messages; NULL: places from 0 */
-    double low[2], high[2];         /* bounds of the nodes, m */
-} fem_mesh;
+typedef ab_mesh fem_mesh;
 
 /* The mesh of a body with spec->mesh, checked: no orphan nodes, no inverted or duplicate element, positive det J at all Gauss points. Mistakes name the place in
  * the scene or the ids of the file, all at once. `folder`: of the scene, for files. */
 ab_status fem_mesh_create(const ab_body_spec *spec, const char *folder, fem_mesh **mesh, ab_report *);
+/* The same, from the folder of the scene's own file. */
+ab_status fem_mesh_read(const ab_scene *scene, const ab_body_spec *spec, fem_mesh **mesh, ab_report *);
 void fem_mesh_destroy(fem_mesh *);
 
 static const uint32_t FEM_NONE = UINT32_MAX;

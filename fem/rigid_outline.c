@@ -201,7 +201,7 @@ ab_status rigid_outline_create(const ab_scene *scene, const ab_body_spec *spec, 
         return of_corners(spec, (const double(*)[2])s->vertices, s->count, o, report);
     case AB_SHAPE_DISC: return of_circles(spec, s->radius, 0.0, o, report);
     case AB_SHAPE_RING: return of_circles(spec, s->radius, s->inner, o, report);
-    default:
+    default: /* a mesh is refused where it is read */
         return ab_report_error(
             report, s->mark,
             "body '%s': a rigid body cannot be a union of shapes; write one polygon round all of it, or a body for each part", spec->name);

@@ -18,7 +18,8 @@ enum { POINTS_PER_THREAD = 4000 };
  * closer, now farther apart than their number says: the least of the limits around it. */
 static double stable_courant(const mpm_body *body) {
     const ab_body_spec *spec = body->domain.spec;
-    if (spec->fill != AB_FILL_CVT) return body->kernel->courant[(int)fmin(ceil(sqrt(spec->per_cell)), 8.0) - 1];
+    if (spec->fill != AB_FILL_CVT && spec->shape.kind != AB_SHAPE_MESH)
+        return body->kernel->courant[(int)fmin(ceil(sqrt(spec->per_cell)), 8.0) - 1];
     const double area = body->motion.mass / body->material->density;
     const int middle = (int)fmin(fmax(ceil(body->h * sqrt((double)body->born / area)), 2.0), 7.0); /* points per direction */
     return fmin(body->kernel->courant[middle - 1], fmin(body->kernel->courant[middle - 2], body->kernel->courant[middle]));
@@ -376,7 +377,24 @@ static bool wants_birth(const mpm_body *body) {
     return false;
 }
 
+/* What is read from a file is not known to lie in the grid before. */
+static ab_status check_inside(const mpm_body *body, const ab_fill *fill, ab_report *report) {
+    const double slack = 1e-9 * body->h, *low = fill->low, *high = fill->high;
+    bool inside = true;
+    for (int c = 0; c < 2; ++c) inside = inside && low[c] >= body->origin[c] - slack && high[c] <= body->origin[c] + body->span[c] + slack;
+    if (inside) return AB_OK;
+    return ab_report_error(
+        report, body->domain.spec->shape.mark,
+        "body '%s' lies partly outside the grid: its mesh reaches from [%.10g, %.10g] to [%.10g, %.10g] m; make the grid larger or "
+        "move the mesh",
+        body->domain.spec->name, low[0], low[1], high[0], high[1]);
+}
+
 ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain **domain, ab_report *report) {
+    return mpm_create_in(scene, index, NULL, threads, domain, report);
+}
+
+ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh, int threads, ab_domain **domain, ab_report *report) {
     const ab_body_spec *spec = scene->bodies + index;
     mpm_body *body = calloc(1, sizeof *body);
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
@@ -415,8 +433,10 @@ ab_status mpm_create(const ab_scene *scene, size_t index, int threads, ab_domain
                                      .seed = (uint64_t)spec->seed,
                                      .tolerance = spec->fill_tolerance,
                                      .iterations = (int)spec->fill_rounds,
-                                     .threads = threads};
+                                     .threads = threads,
+                                     .mesh = mesh};
     ab_status status = ab_fill_make(&spec->shape, &request, spec->name, &fill, report);
+    if (status == AB_OK && mesh) status = check_inside(body, fill, report);
     if (status == AB_OK) status = mpm_points_insert(body, fill, report);
     if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */

@@ -16,6 +16,7 @@
 
 #include "core/domain.h"
 #include "core/material.h"
+#include "core/mesh.h"
 #include "core/vector.h"
 #include "mpm/fill.h"
 
@@ -205,6 +206,8 @@ struct mpm_body {
 
 /* body.c: what main hands to the scheduler for `method: material-points`. */
 ab_status mpm_create(const ab_scene *, size_t body, int threads, ab_domain **, ab_report *);
+/* The same for a body whose shape is a mesh; borrowed, only until this returns. NULL: as its shape says. */
+ab_status mpm_create_in(const ab_scene *, size_t body, const ab_mesh *, int threads, ab_domain **, ab_report *);
 
 /* points.c */
 void mpm_rows_plan(mpm_body *); /* which rows this scene needs */

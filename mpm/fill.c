@@ -31,6 +31,7 @@ ab_status ab_fill_check(const ab_filler *filler, const ab_shape_spec *shape) {
         return AB_OK;
     case AB_SHAPE_POLYGON:
     case AB_SHAPE_UNION: return AB_OK;
+    case AB_SHAPE_MESH: break;
     }
     return ab_report_error(filler->report, shape->mark,
                            "body '%s': a shape of this kind cannot be filled; use box, disc, ring, polygon or union", filler->body);
@@ -52,6 +53,7 @@ ab_status ab_fill_shape(ab_filler *filler, const ab_shape_spec *shape) {
     case AB_SHAPE_RING: return ab_fill_round(filler, shape);
     case AB_SHAPE_POLYGON: return fill_polygon(filler, shape);
     case AB_SHAPE_UNION: return ab_fill_union(filler, shape);
+    case AB_SHAPE_MESH: break;
     }
     return AB_BAD_INPUT;
 }
@@ -81,8 +83,11 @@ ab_status ab_fill_make(const ab_shape_spec *shape, const ab_fill_request *reques
         filler.fill->low[k] = INFINITY;
         filler.fill->high[k] = -INFINITY;
     }
-    ab_status status = ab_fill_check(&filler, shape);
-    if (status == AB_OK) status = request->rule == AB_FILL_CVT ? ab_fill_cvt(&filler, shape) : ab_fill_shape(&filler, shape);
+    ab_status status = shape->kind == AB_SHAPE_MESH && request->mesh ? AB_OK : ab_fill_check(&filler, shape);
+    if (status == AB_OK)
+        status = shape->kind == AB_SHAPE_MESH   ? ab_fill_mesh(&filler, shape->mark, request->mesh)
+                 : request->rule == AB_FILL_CVT ? ab_fill_cvt(&filler, shape)
+                                                : ab_fill_shape(&filler, shape);
     if (status != AB_OK) {
         ab_fill_destroy(filler.fill);
         return status;

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "core/mesh.h"
 #include "core/scene.h"
 
 typedef struct ab_outline_piece { /* a piece of the outline and the point under it */
@@ -26,13 +27,14 @@ typedef struct ab_fill {
 
 typedef struct ab_fill_request { /* how to fill; what is 0 and has a default takes it */
     ab_fill_rule rule;
-    int per_cell;     /* points wanted per cell, any number >= 1 */
-    double cell;      /* m, of the background grid */
-    size_t points;    /* cvt: how many points in all; 0: by per_cell */
-    uint64_t seed;    /* cvt: of the random places that it starts from */
-    double tolerance; /* cvt: the last round moved no point by more than this part of the mean distance of points; default 1e-3 */
-    int iterations;   /* cvt: rounds at most, a warning where they do not do; default 1000 */
-    int threads;      /* cvt: the answer does not depend on it; default 1 */
+    int per_cell;        /* points wanted per cell, any number >= 1 */
+    double cell;         /* m, of the background grid */
+    size_t points;       /* cvt: how many points in all; 0: by per_cell */
+    uint64_t seed;       /* cvt: of the random places that it starts from */
+    double tolerance;    /* cvt: the last round moved no point by more than this part of the mean distance of points; default 1e-3 */
+    int iterations;      /* cvt: rounds at most, a warning where they do not do; default 1000 */
+    int threads;         /* cvt: the answer does not depend on it; default 1 */
+    const ab_mesh *mesh; /* of a shape that is one: gauss, per_cell points (a square) in each element */
 } ab_fill_request;
 
 /* Fills a shape by any rule; ab_fill_create says what regular and gauss do.

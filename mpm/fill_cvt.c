@@ -81,6 +81,7 @@ static ab_status take_outline(ab_cvt *cvt, const ab_shape_spec *shape) {
     case AB_SHAPE_RING: return take_round(cvt, shape);
     case AB_SHAPE_POLYGON: AB_TRY(ab_outline_create(shape, &cvt->outline, filler->body, filler->report)); break;
     case AB_SHAPE_UNION: AB_TRY(ab_union_outline(filler, shape, &cvt->outline)); break;
+    case AB_SHAPE_MESH: return AB_BAD_INPUT; /* refused before */
     }
     for (size_t e = 0; e < cvt->outline.count; e++) ab_filler_bound(filler, cvt->outline.edge[e].from[0], cvt->outline.edge[e].from[1]);
     return AB_OK;

@@ -52,6 +52,7 @@ ab_status ab_fill_check(const ab_filler *filler, const ab_shape_spec *shape);
 
 ab_status ab_fill_shape(ab_filler *filler, const ab_shape_spec *shape); /* any kind */
 ab_status ab_fill_box(ab_filler *filler, const ab_shape_spec *shape);
+ab_status ab_fill_mesh(ab_filler *filler, ab_mark mark, const ab_mesh *mesh); /* Gauss points */
 ab_status ab_fill_round(ab_filler *filler, const ab_shape_spec *shape); /* disc, ring */
 
 #endif
