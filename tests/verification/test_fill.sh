@@ -80,6 +80,10 @@ refused "holes stand beside a polygon" "$column" --set bodies.column.shape='{box
 refused "more than the 1000000" "$column" --set bodies.column.fill='{rule: cvt, per_cell: 10000}' --set constants.cells=100
 [ -e "$scratch/none" ] && fail "a refused scene has left results"
 
+# The example of the page.
+sed -n '/^```yaml$/,/^```$/{/^```/!p}' docs/fills.md >"$scratch/slope.yaml"
+must "$scratch/slope.yaml"
+
 # A fill that would take minutes.
 long=(--set bodies.column.fill='{rule: cvt, points: 60000, tolerance: 1e-9}')
 "$build/abut" run "$column" "${long[@]}" -j 1 -o "$scratch/none" >"$scratch/log" 2>&1 &
