@@ -44,8 +44,8 @@ static void check_points(const one_body *one, size_t born, double mass) {
 
 static void test_no_point_is_lost(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3"}, *const update[] = {"musl", "usf"};
-    for (int b = 0; b < 4; b++)
+    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf"};
+    for (int b = 0; b < 5; b++)
         for (int u = 0; u < 2; u++) {
             const char *text = scene(basis[b], update[u],
                                      "shape: {disc: {center: [4, 6], radius: 2}}, fill: {rule: regular, per_cell: 9}, velocity: "

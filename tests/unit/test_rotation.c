@@ -82,9 +82,9 @@ static void check(const char *basis, const char *update, const char *material, d
 
 static void test_stress_turns_with_the_material(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3"}, *const update[] = {"musl", "usf", "usl"};
+    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf", "usl"};
     const double stress[4] = {3, -2, 1, 0.7}, zero[4] = {0};
-    for (int b = 0; b < 4; b++)
+    for (int b = 0; b < 5; b++)
         for (int u = 0; u < 3; u++) {
             check(basis[b], update[u], "model: linear-elastic, E: 10, nu: 0.3", 10, stress);
             check(basis[b], update[u], "model: neo-hookean, E: 10, nu: 0.3", 10, zero);

@@ -71,8 +71,8 @@ static void shuffle(mpm_body *body, double stress, double shift) {
     }
 }
 
-enum { BASES = 4 };
-static const char *const basis[BASES] = {"gimp", "linear", "bspline2", "bspline3"}, *const update[] = {"musl", "usf", "usl"};
+enum { BASES = 5 };
+static const char *const basis[BASES] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf", "usl"};
 
 /* By the scene: it would be unstable. */
 static bool refused(const char *basis_, const char *update_, const char *transfer) {

@@ -71,10 +71,10 @@ static void run(const char *basis, const char *update, double width, double heig
     one_body_destroy(one);
 }
 
-static void test_gimp_changes_nothing(void **state) {
+static void test_domains_change_nothing(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "{gimp: fixed}"}, *const update[] = {"musl", "usf", "usl"};
-    for (int b = 0; b < 2; b++)
+    static const char *const basis[] = {"gimp", "{gimp: fixed}", "cpdi"}, *const update[] = {"musl", "usf", "usl"};
+    for (int b = 0; b < 3; b++)
         for (int u = 0; u < 3; u++) {
             double worst[4];
             run(basis[b], update[u], 4.2, 3.1, worst);
@@ -106,7 +106,7 @@ static void test_splines_change_nothing(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gimp_changes_nothing), cmocka_unit_test(test_splines_change_nothing),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_domains_change_nothing), cmocka_unit_test(test_splines_change_nothing),
                                        cmocka_unit_test(test_linear_is_recorded)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

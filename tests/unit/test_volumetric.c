@@ -2,9 +2,9 @@
  * ledger books; motion that is affine, and the volume of every cell, are as without; any number of threads gives the same bits; without it there is nothing. */
 #include "one_body.h"
 
-static const char *const basis[] = {"linear", "gimp", "bspline2", "bspline3"}, *const cells[] = {"cell", "patch"},
+static const char *const basis[] = {"linear", "gimp", "bspline2", "bspline3", "cpdi"}, *const cells[] = {"cell", "patch"},
                          *const update[] = {"usl", "musl", "usf"};
-enum { BASES = 4 };
+enum { BASES = 5 };
 
 static const char *scene(double E, const char *basis_, const char *update_, const char *f_bar, const char *more) {
     static char text[2000];
