@@ -209,6 +209,9 @@ ab_status mpm_create(const ab_scene *, size_t body, int threads, ab_domain **, a
 /* The same for a body whose shape is a mesh; borrowed, only until this returns. NULL: as its shape says. */
 ab_status mpm_create_in(const ab_scene *, size_t body, const ab_mesh *, int threads, ab_domain **, ab_report *);
 
+/* plan.c */
+void mpm_plan(const ab_domain *, ab_plan_body *);
+
 /* points.c */
 void mpm_rows_plan(mpm_body *); /* which rows this scene needs */
 ab_status mpm_points_insert(mpm_body *, const ab_fill *, ab_report *);
