@@ -134,6 +134,7 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
     *t = (ab_contact_totals){.points = p->count, .failures = pair->failures, .list = p};
     contact_side side[2];
     contact_sides(pair, side);
+    const double *area = p->measure_area && !points->surfaces && contact_carried_areas(points) ? points->carried : p->area;
     double friction = 0.0, loss = 0.0, tangential = 0.0;
     for (size_t i = 0; i < p->count; ++i) {
         const double jx = p->impulse[i], jy = p->impulse[p->ld + i], nx = p->normal[i], ny = p->normal[p->ld + i];
@@ -149,8 +150,8 @@ static void book(contact_all *all, size_t number, const ab_step *step) {
         t->impulse[1] += jy;
         t->normal_force += fabs(jn) / step->dt;
         tangential += jt / step->dt;
-        t->area += p->area[i];
-        if (p->area[i] > 0.0 && !points->spread.wanted) t->peak_pressure = fmax(t->peak_pressure, jn / (p->area[i] * step->dt));
+        t->area += area[i];
+        if (area[i] > 0.0 && !points->spread.wanted) t->peak_pressure = fmax(t->peak_pressure, jn / (area[i] * step->dt));
         t->moment +=
             ((p->position[i] + all->scene->grid_from[0]) * jy - (p->position[p->ld + i] + all->scene->grid_from[1]) * jx) / step->dt;
         ++t->active;

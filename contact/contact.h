@@ -51,6 +51,8 @@ typedef struct contact_points {
     size_t old_count, old_capacity;
     contact_sums sums;
     contact_spread spread;
+    double *carried; /* area that each point's impulse acts on, where shared nodes are asked for areas: carried.c */
+    size_t carried_capacity;
     uint32_t *seen; /* by dof: the last look for shared dofs that met it */
     size_t seen_capacity;
     uint32_t look; /* number of the last one */
@@ -143,6 +145,7 @@ void contact_spread_destroy(contact_spread *);
 /* share.c */
 bool contact_share_sums(contact_points *); /* into state0, from the states of the last step; false: no memory */
 void contact_sums_destroy(contact_sums *);
+bool contact_carried_areas(contact_points *); /* into carried, of shared nodes, once impulses stand: m, sum kept but for what nobody near carries; false: no memory */
 
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */

@@ -63,7 +63,7 @@ void contact_points_destroy(contact_points *points) {
         free(points->relative_old);
     free(points->applied), free(points->change), free(points->direction), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
-    free(points->seen);
+    free(points->seen), free(points->carried);
     contact_sums_destroy(&points->sums);
     contact_spread_destroy(&points->spread);
 }
