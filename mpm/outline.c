@@ -30,17 +30,20 @@ size_t mpm_outline_bytes(const struct mpm_outline *o) {
     return o ? sizeof *o + o->loops.capacity * 65 + o->capacity * (16 + 8 + 20) + o->room * 12 + mpm_touching_bytes(o->touching) : 0;
 }
 
-/* A finder that does not look at surfaces would not see the points on them. */
+/* What a finder may see of surface points: themselves, or the outline between them near nodes of the grid. */
+static const uint32_t SEES_SURFACE_POINTS = AB_NEED_SURFACE | AB_NEED_NEAR_POINTS;
+
+/* A finder that sees neither would let bodies touch elsewhere than asked for. */
 static ab_status check_finders(const mpm_body *body, ab_report *report) {
     const ab_scene *scene = body->scene;
     const ab_body_spec *spec = body->domain.spec;
     for (size_t k = 0; k < scene->contact_count && spec->surface_points > 0.0; ++k) {
         const ab_contact_spec *contact = scene->contacts + k;
         if (contact->body[0] != body->domain.index && contact->body[1] != body->domain.index) continue;
-        if (!(contact->finder->class_.needs & AB_NEED_SURFACE))
+        if (!(contact->finder->class_.needs & SEES_SURFACE_POINTS))
             return ab_report_error(report, contact->mark,
                                    "contact by '%s' looks at the nodes of the grid and not at the surface points of body '%s'; use "
-                                   "point-to-segment, or leave surface: points out of the body",
+                                   "point-to-segment or multi-velocity, or leave surface: points out of the body",
                                    contact->finder->class_.name, spec->name);
     }
     return AB_OK;
@@ -55,7 +58,7 @@ static bool wants_faces(const mpm_body *body) {
         const size_t own = body->domain.index;
         const uint32_t needs = contact->finder->class_.needs;
         if (contact->body[0] != own && contact->body[1] != own) continue;
-        if (body->domain.spec->surface_points > 0.0 && (needs & AB_NEED_SURFACE)) return true;
+        if (body->domain.spec->surface_points > 0.0 && (needs & SEES_SURFACE_POINTS)) return true;
         if (!(needs & AB_NEED_SURFACE)) continue;
         const size_t other = contact->body[contact->body[0] == own];
         if (!strcmp(scene->bodies[other].method, body->domain.ops->method)) return true;
@@ -209,7 +212,7 @@ ab_status mpm_faces(ab_domain *domain, ab_surface *surface, ab_report *report) {
     const mpm_loops *loops = &o->loops;
     if (!reserve(o)) return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
     const size_t most = o->touching ? mpm_touching_most_nodes() : NODES;
-    if (o->touching && !mpm_touching_place(body)) return lost(body, loops->x, report);
+    if (o->touching && !mpm_touching_place(body, true)) return lost(body, loops->x, report);
     o->start[0] = 0;
     for (size_t k = 0; k < loops->count; ++k) {
         const double *x = loops->x + 2 * k;

@@ -30,7 +30,8 @@ struct mpm_outline {
 /* surface_points.c: vertices that touch. Each is a fixed combination of the material points around it, x = sum a x_p with sum a = 1, and so are its velocity and what
  * it is pushed by. */
 ab_status mpm_touching_create(mpm_body *, const ab_fill *, ab_report *);
-bool mpm_touching_place(mpm_body *); /* where the vertices are now, into loops.x; false: all that one of them hung on has left */
+/* Where the vertices are now, into loops.x; false: all that one of them hung on has left. stencils: and what mpm_touching_stencil needs. */
+bool mpm_touching_place(mpm_body *, bool stencils);
 /* Nodes and weights of vertex k, after mpm_touching_place: they add up to 1 and their centre is the vertex. Their number, mpm_touching_most_nodes() at most; 0: what
  * it hung on is torn apart. */
 size_t mpm_touching_stencil(const mpm_body *, size_t k, uint32_t *dof, double *weight);
@@ -38,6 +39,19 @@ size_t mpm_touching_most_nodes(void);
 ab_status mpm_touching_points(mpm_body *, const ab_region *, ab_surface *, ab_report *); /* after mpm_faces */
 void mpm_touching_destroy(struct mpm_touching *);
 size_t mpm_touching_bytes(const struct mpm_touching *);
+
+/* trace_outline.c: pieces of the outline between vertices that touch, near nodes. */
+typedef struct mpm_near_piece {
+    uint32_t node;    /* number among the nodes asked for */
+    double x[2];      /* m, its middle */
+    double extent[3]; /* m2: xx, yy, xy of s s^T, s from there to its end */
+} mpm_near_piece;
+typedef struct mpm_near_pieces {
+    size_t count, room;
+    mpm_near_piece *list;
+} mpm_near_pieces;
+/* The pieces within reach of the body's basis of each node, `nodes` ascending, in the order of the outline. False: no memory. */
+bool mpm_pieces_near(mpm_body *, const uint32_t *nodes, size_t count, mpm_near_pieces *);
 
 /* Loops from the pieces of outline that a fill leaves, in vertices about `spacing` apart (corners always; smooth stretches evenly). lifted: those of
  * smooth stretches stand a little outside, so that the loops enclose the area of the outline to second order; else on the outline. An error where the pieces do not close. */

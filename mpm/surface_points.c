@@ -202,8 +202,8 @@ ab_status mpm_touching_create(mpm_body *body, const ab_fill *fill, ab_report *re
 
 /* ---- in each step ---------------------------------------------------------------------------------------------------------------------- */
 
-/* Where the anchors are, and their stencils. */
-static void look(mpm_body *body) {
+/* Where the anchors are, and their stencils if asked for. */
+static void look(mpm_body *body, bool stencils) {
     struct mpm_touching *t = body->outline->touching;
     const int nodes = body->kernel->nodes;
     mpm_stencils w;
@@ -216,12 +216,13 @@ static void look(mpm_body *body) {
         if (!at->here) continue;
         const double *block = mpm_block(body, slot / 8);
         const int l = (int)(slot % 8);
+        for (int c = 0; c < 2; ++c) at->x[c] = block[8 * (ROW_X + c) + l];
+        if (!stencils) continue;
         if (slot / 8 != last) {
             last = slot / 8;
             tile = body->tiles + mpm_tile_of_block(body, last);
             body->kernel->stencils(body, tile, block, &w);
         }
-        for (int c = 0; c < 2; ++c) at->x[c] = block[8 * (ROW_X + c) + l];
         at->node[0] = tile->tx * AB_TILE + w.node[l] % body->kernel->patch - 1;
         at->node[1] = tile->ty * AB_TILE + w.node[l] / body->kernel->patch - 1;
         for (int j = 0; j < nodes; ++j)
@@ -233,9 +234,10 @@ static void look(mpm_body *body) {
     }
 }
 
-bool mpm_touching_place(mpm_body *body) {
+bool mpm_touching_place(mpm_body *body, bool stencils) {
     struct mpm_touching *t = body->outline->touching;
-    look(body);
+    bool all = true;
+    look(body, stencils);
     for (size_t k = 0; k < t->vertices; ++k) {
         double x[2] = {0.0, 0.0}, sum = 0.0;
         for (size_t e = t->first[k]; e < t->first[k + 1]; ++e) {
@@ -244,10 +246,11 @@ bool mpm_touching_place(mpm_body *body) {
             x[0] += t->share[e] * at->x[0], x[1] += t->share[e] * at->x[1];
             sum += t->share[e];
         }
-        if (!(sum > 0.0)) return false;
+        all = all && sum > 0.0;
+        if (!(sum > 0.0)) continue;
         for (size_t c = 0; c < 2; ++c) body->outline->loops.x[2 * k + c] = x[c] / sum;
     }
-    return true;
+    return all;
 }
 
 size_t mpm_touching_stencil(const mpm_body *body, size_t k, uint32_t *dof, double *weight) {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "mpm/body.h"
+#include "mpm/outline.h"
 
 typedef struct near_point {
     uint32_t node;
@@ -19,7 +19,8 @@ struct mpm_trace {
     uint64_t *key;
     double *near_position, *near_extent;
     near_point *entries;
-    uint32_t *stamp; /* per tile: candidate in call number stamp */
+    mpm_near_pieces pieces; /* of the outline, where that is what touches */
+    uint32_t *stamp;        /* per tile: candidate in call number stamp */
     uint32_t *tile_list;
     uint32_t call;
 };
@@ -28,7 +29,7 @@ void mpm_trace_destroy(struct mpm_trace *t) {
     if (!t) return;
     free(t->position), free(t->mass), free(t->mass_gradient), free(t->area_vector), free(t->near_start), free(t->stencil_start);
     free(t->stencil_dof), free(t->stencil_weight), free(t->key), free(t->near_position), free(t->near_extent), free(t->entries);
-    free(t->stamp), free(t->tile_list), free(t->density_gradient), free(t);
+    free(t->stamp), free(t->tile_list), free(t->density_gradient), free(t->pieces.list), free(t);
 }
 
 static bool grow(void *pointer, size_t count, size_t size) {
@@ -167,6 +168,39 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
     return true;
 }
 
+/* The points near each node, one node after the other. Where a body touches by its own outline, its points have no size, and the outline's pieces follow them. */
+static bool list_near(mpm_body *body, const uint32_t *nodes, size_t count, size_t entries) {
+    struct mpm_trace *t = body->trace;
+    const bool outline = body->outline && body->outline->touching;
+    if (outline && !mpm_pieces_near(body, nodes, count, &t->pieces)) return false;
+    const size_t pieces = outline ? t->pieces.count : 0;
+    if (entries + pieces > t->near_capacity) {
+        const size_t n = 2 * (entries + pieces) + 64;
+        if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) return false;
+        t->near_capacity = n;
+    }
+    memset(t->near_start, 0, (count + 1) * sizeof *t->near_start); /* counting sort by node keeps the order of tiles and points */
+    for (size_t e = 0; e < entries; ++e) ++t->near_start[t->entries[e].node + 1];
+    for (size_t e = 0; e < pieces; ++e) ++t->near_start[t->pieces.list[e].node + 1];
+    for (size_t k = 0; k < count; ++k) t->near_start[k + 1] += t->near_start[k];
+    for (size_t e = 0; e < entries; ++e) {
+        const size_t to = t->near_start[t->entries[e].node]++;
+        const double *point = mpm_block(body, t->entries[e].slot / 8) + t->entries[e].slot % 8;
+        for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = point[8 * (ROW_X + c)];
+        for (size_t c = 0; c < 3; ++c)
+            t->near_extent[c * t->near_capacity + to] = outline ? 0.0 : point[8 * ((size_t)body->rows.extent + c)];
+    }
+    for (size_t e = 0; e < pieces; ++e) {
+        const mpm_near_piece *piece = t->pieces.list + e;
+        const size_t to = t->near_start[piece->node]++;
+        for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = piece->x[c];
+        for (size_t c = 0; c < 3; ++c) t->near_extent[c * t->near_capacity + to] = piece->extent[c];
+    }
+    for (size_t k = count; k > 0; --k) t->near_start[k] = t->near_start[k - 1];
+    t->near_start[0] = 0;
+    return true;
+}
+
 ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (!reserve(body, count)) goto no_memory;
@@ -203,24 +237,7 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         const size_t tiles = candidate_tiles(body, nodes, count);
         for (size_t k = 0; k < tiles; ++k) mpm_trace_density(body, body->tiles + t->tile_list[k], nodes, count, t->density_gradient, ld);
     }
-    if (needs & AB_NEED_NEAR_POINTS) { /* counting sort by node keeps the order of tiles and points */
-        if (entries > t->near_capacity) {
-            const size_t n = 2 * entries + 64;
-            if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) goto no_memory;
-            t->near_capacity = n;
-        }
-        memset(t->near_start, 0, (count + 1) * sizeof *t->near_start);
-        for (size_t e = 0; e < entries; ++e) ++t->near_start[t->entries[e].node + 1];
-        for (size_t k = 0; k < count; ++k) t->near_start[k + 1] += t->near_start[k];
-        for (size_t e = 0; e < entries; ++e) {
-            const size_t to = t->near_start[t->entries[e].node]++;
-            const double *point = mpm_block(body, t->entries[e].slot / 8) + t->entries[e].slot % 8;
-            for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = point[8 * (ROW_X + c)];
-            for (size_t c = 0; c < 3; ++c) t->near_extent[c * t->near_capacity + to] = point[8 * ((size_t)body->rows.extent + c)];
-        }
-        for (size_t k = count; k > 0; --k) t->near_start[k] = t->near_start[k - 1];
-        t->near_start[0] = 0;
-    }
+    if ((needs & AB_NEED_NEAR_POINTS) && !list_near(body, nodes, count, entries)) goto no_memory;
     *trace = (ab_trace){
         .struct_size = sizeof *trace,
         .dimension = 2,

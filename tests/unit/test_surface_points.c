@@ -192,11 +192,56 @@ static void refused(const char *text, const char *why) {
 static void test_what_cannot_be_is_refused(void **state) {
     (void)state;
     refused(scene("surface: points", "shape: {box: [[2, 4], [6, 4.4]]}, fill: {per_cell: 1}", "[0, 0]", 1e-3), "only one point thick");
-    char text[4000], *algorithm;
-    snprintf(text, sizeof text, "%s", scene("surface: points", "shape: {box: [[2, 4], [6, 6]]}, fill: {per_cell: 4}", "[0, 0]", 1e-3));
-    assert_non_null(algorithm = strstr(text, "point-to-segment"));
-    memcpy(algorithm, "multi-velocity  ", 16);
-    refused(text, "not at the surface points of body 'b'");
+}
+
+/* A finder that looks at nodes is shown the outline: over all nodes, how far it reaches along any direction is that of the shape as drawn, to the corner; the pieces near a
+ * node are short, lie within the reach of its basis, and between them on the outline there is nothing left out. */
+static void test_nodes_see_the_outline(void **state) {
+    (void)state;
+    static const double POLYGON[4][2] = {{2.13, 4.2}, {6.4, 5.1}, {5.2, 8.77}, {2.9, 7.9}};
+    static const char *const BASES[] = {"basis: gimp", "basis: linear", "basis: bspline2", "basis: cpdi"};
+    for (int b = 0; b < 4; b++) {
+        char more[100], text[4000], *algorithm;
+        snprintf(more, sizeof more, "%s, surface: points", BASES[b]);
+        snprintf(text, sizeof text, "%s",
+                 scene(more, "shape: {polygon: [[2.13, 4.2], [6.4, 5.1], [5.2, 8.77], [2.9, 7.9]]}, fill: {per_cell: 4}", "[0, 0]", 1e-3));
+        assert_non_null(algorithm = strstr(text, "point-to-segment"));
+        memcpy(algorithm, "multi-velocity  ", 16);
+        one_body *one = one_body_create(text, 1);
+        must(one, one->domain->ops->begin(one->domain, &one->step, one->report));
+        const size_t most = one->mpm->tile_count * AB_TILE_NODES;
+        uint32_t *nodes = malloc(most * sizeof *nodes);
+        size_t count = 0;
+        for (size_t k = 0; k < most; k++)
+            if (one->mpm->own[k * OWN_RECORD + OWN_MASS] > 0) nodes[count++] = (uint32_t)k;
+        ab_trace t = {0};
+        must(one, one->domain->ops->trace(one->domain, nodes, count, AB_NEED_NEAR_POINTS, &t, one->report));
+        assert_int_equal(t.count, count);
+        const double h = one->mpm->h, reach = one->mpm->kernel->reach * h;
+        size_t pieces = 0;
+        for (size_t i = 0; i < count; i++)
+            for (size_t k = t.near_start[i]; k < t.near_start[i + 1]; k++) {
+                const double half = sqrt(t.near_extent[k] + t.near_extent[t.near_ld + k]);
+                assert_true(half <= 0.125 * h * (1 + 1e-9));
+                for (size_t c = 0; c < 2; c++)
+                    assert_true(fabs(t.near_position[c * t.near_ld + k] - t.position[c * t.ld + i]) <= reach + half + 1e-12);
+                pieces += half > 0;
+            }
+        assert_true(pieces > 0);
+        for (double angle = 0.05; angle < 6.3; angle += 0.1) {
+            const double n[2] = {cos(angle), sin(angle)};
+            double exact = -INFINITY, seen = -INFINITY;
+            for (int v = 0; v < 4; v++) exact = fmax(exact, n[0] * (POLYGON[v][0] + 5) + n[1] * (POLYGON[v][1] + 3));
+            for (size_t k = 0; k < t.near_start[count]; k++) {
+                const double *x = t.near_position + k, *e = t.near_extent + k;
+                const double square = n[0] * n[0] * e[0] + n[1] * n[1] * e[t.near_ld] + 2 * n[0] * n[1] * e[2 * t.near_ld];
+                seen = fmax(seen, n[0] * x[0] + n[1] * x[t.near_ld] + sqrt(fmax(square, 0)));
+            }
+            assert_true(fabs(seen - exact) < 1e-8);
+        }
+        free(nodes);
+        one_body_destroy(one);
+    }
 }
 
 static void test_nothing_is_made_without_contact(void **state) {
@@ -212,9 +257,10 @@ static void test_nothing_is_made_without_contact(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points_stand_on_the_outline),    cmocka_unit_test(test_any_shape_and_fill),
-        cmocka_unit_test(test_a_turning_box_takes_them_along), cmocka_unit_test(test_affine_motion_is_exact),
-        cmocka_unit_test(test_what_cannot_be_is_refused),      cmocka_unit_test(test_nothing_is_made_without_contact),
+        cmocka_unit_test(test_points_stand_on_the_outline),     cmocka_unit_test(test_any_shape_and_fill),
+        cmocka_unit_test(test_a_turning_box_takes_them_along),  cmocka_unit_test(test_affine_motion_is_exact),
+        cmocka_unit_test(test_nodes_see_the_outline),           cmocka_unit_test(test_what_cannot_be_is_refused),
+        cmocka_unit_test(test_nothing_is_made_without_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

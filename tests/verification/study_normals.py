@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # cost: 200
 """The tables of docs/accuracy.md about normals and gaps on shared nodes: study_normals.py BUILD [--write] prints them; --write puts them into docs/accuracy.md.
+--surface=points: of bodies that touch by points on their outline; --draws=N and --only=WORD for less.
 
 Two bodies a small gap apart, drawn at random angles on a grid moved by random parts of a cell; build/tests/node_normals says what the finder makes of each node they share, with every word of `normal`.
 The angle to the exact normal and the error of the gap are those at nodes beside the place of contact (within half a cell of it along the face; on conforming faces at all nodes). A mean is
@@ -25,6 +26,7 @@ PAGE = "docs/accuracy.md"
 BEGIN, END = "<!-- made by study_normals.py: begin -->", "<!-- made by study_normals.py: end -->"
 METHODS = ["average", "mass-gradient", "volume-gradient", "density-gradient", "geometric", "regression", "convex", "stiffer", "faces"]
 ONLY = next((word[7:] for word in sys.argv if word.startswith("--only=")), "")
+SURFACE = next((word[10:] for word in sys.argv if word.startswith("--surface=")), "domains")
 failures = []
 random = np.random.default_rng(20)
 
@@ -57,7 +59,7 @@ class Draw:
 
 
 def points(shape, basis, per_cell):
-    return f"{{method: material-points, material: soft, basis: {basis}, fill: {{per_cell: {per_cell}}}, {shape}}}"
+    return f"{{method: material-points, material: soft, basis: {basis}, fill: {{per_cell: {per_cell}}}, surface: {SURFACE}, {shape}}}"
 
 
 def beside(s, n, g):

@@ -34,7 +34,6 @@ if ! cmp -s "$scratch/$one/history.csv" "$scratch/$count/history.csv"; then
     echo "MISSED  two threads give other bits than one"
 fi
 variant "at rest" rest_on_segments bodies.block.surface=points
-wanted=2 variant "multi-velocity is refused" impact_turned bodies.a.surface=points
 variant "contact points in the results" rest_on_segments bodies.block.surface=points 'output={contact: true}' time.end=0.5
 [ -f "$scratch/$count/results_contact_0.xdmf" ] || { missed=$((missed + 1)); echo "MISSED  results_contact_0.xdmf"; }
 [ $missed -eq 0 ]
