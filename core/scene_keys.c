@@ -113,7 +113,7 @@ static const ab_key body[] = {
                         "averaged over the points of a cell, or over a patch of 3 x 3 cells, which leaves no checkerboard of pressures"},
     [BODY_SURFACE] = {"surface", AB_KEY_WORD, .words = "domains|points", .initial = "domains",
                       .help = "what of the body touches others: the domains of its material points, or points on its own outline, a cell "
-                              "apart; another distance is {points: 0.25}"},
+                              "apart (multi-velocity: the outline between them); another distance is {points: 0.25}"},
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},

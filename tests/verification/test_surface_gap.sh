@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 15
+# cost: 10
 # The gap of multi-velocity by points on the bodies' own outline: a corner touches where it was drawn, at any angle and place on the grid; impact along the grid and turned,
 # an oblique impact, with surface points on one body and on both; the same bits on any number of threads. test_surface_gap.sh BUILD
 set -u
