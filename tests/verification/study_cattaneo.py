@@ -27,7 +27,7 @@ def load(z, part=1.0):
 
 def run(build, ratio, folder):
     settings = {
-        "constants.nu": NU, "bodies.block.f_bar": "cell", "time.end": "30*T", "contact[0]": CONTACT,
+        "constants.nu": NU, "constants.deep": 0.4, "bodies.block.fill": "{per_cell: 4}", "bodies.block.transfer": "flip", "bodies.block.f_bar": "cell", "time.end": "30*T", "contact[0]": CONTACT,
         "bodies.cylinder.motion.velocity": "[null, null]", "loads[0].force": FORCE % (ratio * MU * P),
     }
     command = [f"{build}/abut", "run", "tests/verification/hertz_points.yaml", "--quiet", "-j", "1", "-o", folder]

@@ -10,9 +10,16 @@ import tempfile
 import h5py
 import numpy as np
 
-PLACES = [(0.37, 0.31), (0.05, 0.5), (0.2, 0.0), (0.55, 0.25), (0.8, 0.7)]  # shift, aside
+PLACES = [(0.37, 0.31), (0.05, 0.5), (0.2, 0.0), (0.55, 0.25), (0.8, 0.7), (0.1, 0.25)]  # shift, aside
 SPRINGS = "{bodies: [block, cylinder], algorithm: point-to-segment, passes: first, response: penalty, stiffness_of: modulus, stiffness: 3}"
-WAYS = [("points", "coulomb", []), ("points", "penalty", ["contact[0]=" + SPRINGS]), ("domains", "coulomb", []), ("domains", "penalty", ["contact[0]=" + SPRINGS])]
+FEWER = ["bodies.block.fill={per_cell: 4}", "bodies.block.transfer=flip", "constants.deep=0.4"]
+WAYS = [  # surface, response, what else is said of it, settings
+    ("points", "coulomb", "9 a cell, apic", []),
+    ("points", "coulomb", "4 a cell, flip", FEWER),
+    ("points", "penalty", "4 a cell, flip", FEWER + ["contact[0]=" + SPRINGS]),
+    ("domains", "coulomb", "4 a cell, flip", FEWER),
+    ("domains", "penalty", "4 a cell, flip", FEWER + ["contact[0]=" + SPRINGS]),
+]
 E, NU, P, R = 1e7, 0.3, 1e4, 1.0
 P0 = np.sqrt(P * E / (1 - NU**2) / np.pi / R)
 A = np.sqrt(4 * P * R * (1 - NU**2) / np.pi / E)
@@ -44,12 +51,12 @@ def errors(build, folder, surface, more, shift, aside):
 def main():
     build = sys.argv[1]
     places = PLACES[: int(sys.argv[3])] if "--first" in sys.argv else PLACES
-    print("| surface | response | " + " | ".join(f"{s} h, {a} h" for s, a in places) + " |")
-    print("| --- | --- |" + " --- |" * len(places))
+    print("| surface | response | points, transfer | " + " | ".join(f"{s} h, {a} h" for s, a in places) + " |")
+    print("| --- | --- | --- |" + " --- |" * len(places))
     with tempfile.TemporaryDirectory() as folder:
-        for surface, response, more in WAYS:
+        for surface, response, what, more in WAYS:
             cells = [" / ".join(f"{100 * e:.1f}" for e in errors(build, folder, surface, more, s, a)) for s, a in places]
-            print(f"| {surface} | {response} | " + " | ".join(cells) + " |", flush=True)
+            print(f"| {surface} | {response} | {what} | " + " | ".join(cells) + " |", flush=True)
 
 
 if __name__ == "__main__":
