@@ -1,7 +1,9 @@
 /* command_trade.c: abut trade: reads the scene with what the command line adds to its `trade`, runs, judges, writes. */
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/commands.h"
 #include "core/trade.h"
@@ -74,6 +76,17 @@ static ab_status check_values(const ab_command_line *line, const ab_scene *scene
     return status;
 }
 
+/* Whether --write can be: before all runs, rather than after them. */
+static ab_status check_place(const ab_command_line *line, ab_report *report) {
+    if (line->write == NULL) return AB_OK;
+    char folder[PATH_MAX];
+    const char *slash = strrchr(line->write, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash == NULL ? 1 : (int)(slash - line->write) + (slash == line->write),
+             slash == NULL ? "." : line->write);
+    if (access(folder, W_OK) == 0) return AB_OK;
+    return ab_report_error(report, AB_NOWHERE, "--write %s: the folder '%s' cannot be written: %s", line->write, folder, strerror(errno));
+}
+
 /* The scene with the settings of one run, on stdout's terms: a file that `abut run` takes. */
 static ab_status write_scene(const ab_command_line *line, const ab_trade *trade, size_t chosen, ab_report *report) {
     if (chosen == SIZE_MAX) return ab_report_failure(report, "%s is not written: no run met the tolerance or the time", line->write);
@@ -106,6 +119,7 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
                                "%s has no `trade`, and no --vary is given: nothing to try; for example --vary grid.cell=0.5,0.25,0.125",
                                line->words[0]);
     AB_TRY(check_values(line, scene, registry, report));
+    AB_TRY(check_place(line, report));
     char folder[PATH_MAX + 32], base[PATH_MAX + 16];
     ab_command_folder(line->words[0], base, sizeof base);
     snprintf(folder, sizeof folder, "%s-trade", base);
@@ -119,7 +133,7 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
                       .threads = line->threads > 0 ? line->threads : 1,
                       .quiet = line->quiet};
     ab_status status = ab_trade_plan(&trade, report);
-    if (status == AB_OK) status = ab_trade_run(&trade, scene, report);
+    if (status == AB_OK) status = ab_trade_run(&trade, scene, registry, report);
     const bool stopped = status > 128;
     if (status == AB_OK || stopped) { /* what is done is judged all the same */
         ab_status judged = ab_trade_judge(&trade, scene, report);
@@ -131,6 +145,10 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
             judged = write_scene(line, &trade, chosen, report);
         }
         if (judged == AB_OK) printf("  %s holds trade.csv, trade.json and trade.svg\n", trade.folder);
+        size_t done = 0;
+        for (size_t i = 0; i < trade.count; i++) done += trade.trials[i].state == AB_TRIAL_DONE;
+        if (judged == AB_OK && done == 0 && !stopped)
+            judged = ab_report_failure(report, "no run came to its end; the table says why each did not");
         if (!stopped) status = judged;
     }
     ab_trade_clear(&trade);

@@ -63,8 +63,8 @@ typedef struct ab_trade {
 /* All combinations as trials, the last ladder changing fastest; folders named. */
 ab_status ab_trade_plan(ab_trade *trade, ab_report *report);
 void ab_trade_clear(ab_trade *trade);
-/* Runs what is not there yet, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
-ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_report *report);
+/* Runs what is not there yet or had failed, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
+ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *registry, ab_report *report);
 /* Errors, remainders and the front from what the runs wrote. */
 ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *report);
 /* The cheapest run with an error of at most `tolerance`, the most accurate within `seconds` of processor time; SIZE_MAX: none. */

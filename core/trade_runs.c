@@ -114,8 +114,8 @@ static uint64_t hash_scene(uint64_t h, const char *path) {
     return h;
 }
 
-/* Of all that decides what a run gives: the scene, meshes in files, overrides, the program. Threads change its cost. */
-static void take_fingerprint(ab_trade *trade, const ab_scene *scene) {
+/* Of all that decides what a run gives: the scene, meshes in files, overrides, the program and every plugin it finds. Threads change its cost. */
+static void take_fingerprint(ab_trade *trade, const ab_scene *scene, ab_registry *registry) {
     uint64_t h = hash_scene(HASH_START, trade->scene);
     for (size_t b = 0; b < scene->body_count; b++) {
         const char *file = scene->bodies[b].mesh.file, *slash = strrchr(trade->scene, '/');
@@ -126,6 +126,10 @@ static void take_fingerprint(ab_trade *trade, const ab_scene *scene) {
     }
     for (size_t i = 0; i < trade->override_count; i++) h = hash_text(hash_text(h, trade->overrides[i].path), trade->overrides[i].value);
     h = hash_file(h, "/proc/self/exe");
+    ab_report *refused = ab_report_create(); /* a plugin that no run asks for may be broken */
+    if (refused != NULL) ab_registry_load_all(registry, refused);
+    ab_report_destroy(refused);
+    for (size_t i = 0; i < ab_registry_count(registry); i++) h = hash_file(h, ab_registry_class(registry, i)->path);
     snprintf(trade->fingerprint, sizeof trade->fingerprint, "%016" PRIx64 "-%d", h, trade->threads);
 }
 
@@ -329,7 +333,12 @@ static ab_status collect(ab_trade *trade, ab_trial *trial, int how, const struct
         return AB_OK;
     }
     conclude(trial, status);
-    if (status > 128) return AB_OK; /* killed from outside: the same */
+    if (WIFSIGNALED(how)) {
+        char why[80];
+        snprintf(why, sizeof why, "killed by signal %d (%s)", WTERMSIG(how), strsignal(WTERMSIG(how)));
+        say_why(trial, why);
+    }
+    if (trial->state == AB_TRIAL_FAILED) return AB_OK; /* a full disk or a lack of memory may be gone the next time */
     return keep(trade, trial, status, report);
 }
 
@@ -390,11 +399,11 @@ static ab_status run_all(ab_trade *trade, ab_report *report) {
     }
 }
 
-ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_report *report) {
+ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *registry, ab_report *report) {
     char folder[4200];
     snprintf(folder, sizeof folder, "%s/runs", trade->folder);
     AB_TRY(ab_folder_make(folder, report));
-    take_fingerprint(trade, scene);
+    take_fingerprint(trade, scene, registry);
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
     struct sigaction action = {.sa_handler = on_signal}, old[3];
     stopped = 0;

@@ -17,7 +17,8 @@ TRANSFERS = ["flip", "apic", "tpic", "{fmpm: 3}"]
 NORMALS = ["average", "mass-gradient", "volume-gradient", "density-gradient", "geometric", "regression", "convex", "stiffer"]
 PAGE = "docs/accuracy.md"
 BEGIN, END = "<!-- made by study_accuracy.py: begin -->", "<!-- made by study_accuracy.py: end -->"
-MADE = 1e-3  # of the energy that moves: more than this is not made without an error
+MADE = 1e-2  # of the energy that moves, as in the scenes' own ledgers: more than this is not made without an error
+WRITE = "--write" in sys.argv
 runs = Runs(sys.argv[1])
 failures = runs.failures
 
@@ -77,12 +78,13 @@ def translation(basis, transfer):
         return ["fails", ""]
     energy, seconds = ran[1]["energy"], f"{ran[0]['cpu_seconds']:.1f}"
     off = abs(energy / energy[0] - 1) > 1e-6
-    if off.any():
+    if off.any() or ran[0]["outcome"] != "done":
+        off[-1] = True
         if transfer != "flip" and basis != "linear":
             failures.append(f"translation, {basis}, {transfer}: energy off from {ran[1]['t'][off.argmax()]:.0f} s on")
         return [f"to cell {ran[1]['x'][off.argmax()] / 0.5:.0f}", seconds]
     worst = max(abs(e) for e in errors(ran[0]).values())
-    if worst > 1e-9:
+    if worst > 1e-8:  # a hundred times what translation.yaml allows on a hundredth of the way
         failures.append(f"translation, {basis}, {transfer}: changed by {worst:.2g} on the way")
     return [f"{worst:.0e}", seconds]
 
@@ -117,6 +119,12 @@ def discs(basis, transfer, settings):
     return cells(ran[0], e["duration"], e["exit speed of the left disc"], e["largest force"], ran[2]) if ran else ["fails"] + [""] * 4
 
 
+def hertz(basis, transfer):
+    ran = run("hertz", "tests/verification/hertz_points.yaml", ["block"], basis, transfer)
+    e = errors(ran[0]) if ran else None
+    return [basis, transfer] + (cells(ran[0], e["peak pressure"], e["half width of contact"], ran[2]) if ran else ["fails"] + [""] * 3)
+
+
 def contact_row(basis, transfer, normal):
     settings = {"contact[0].normal": normal} if normal != "average" else {}
     return [basis, transfer, normal, *impact(basis, transfer, settings), *incline(basis, transfer, settings), *cylinder(basis, transfer, settings), *discs(basis, transfer, settings)]
@@ -135,4 +143,7 @@ if __name__ == "__main__":
                          "(cases/block_on_incline): acceleration, friction force. Cylinder that rolls (cylinder.slow.yaml, R/h = 16): acceleration, spin. Discs (discs.yaml, R/h = 16) against 64: duration, exit speed, largest force.",
                          ["basis", "transfer", "normal", "impact: force", "duration", "speed", "remainder", "s", "incline: acceleration", "friction", "remainder", "s", "cylinder: acceleration", "spin", "remainder",
                           "s", "discs: duration", "exit", "largest force", "remainder", "s"], pool.map(lambda choice: contact_row(*choice), choices))
+    text += "\n" + table("Rigid cylinder pressed into a block whose outline carries points, point-to-segment (hertz_points.yaml, a/h = 4): peak pressure and remainder in per cent, half width in per cent of a cell.",
+                         ["basis", "transfer", "peak pressure", "half width", "remainder", "s"],
+                         pool.map(lambda choice: hertz(*choice), [(basis, transfer) for basis in BASES for transfer in ("flip", "apic")]))
     finish(text, failures, PAGE, BEGIN, END, WRITE)

@@ -71,6 +71,14 @@ must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" tra
 must "the limit stops dear runs" says 0 "cheaper run is over the limit" "$build/abut" trade "$bar" --vary constants.cells=12,1600,3200 --set trade.limit=0.7 -o limit
 must "a signal leaves what is done" says 124 "1 of 2 runs have no answer" timeout -s INT 3 "$build/abut" trade "$bar" --vary constants.cells=12,1600 -o signal
 must "and it goes on from there" says 0 "done before" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o signal
+mkdir copy && cp -r "$build/abut" "$build/plugins" copy/
+must "runs with another plugin are new ones" bash -c "
+    copy/abut trade '$bar' --vary constants.cells=12 -o again -q >first && copy/abut trade '$bar' --vary constants.cells=12 -o again 2>&1 | grep -q 'done before' &&
+    printf 'x' >>copy/plugins/material/linear_elastic.so && copy/abut trade '$bar' --vary constants.cells=12 -o again 2>&1 | grep -q 'cells=12: done, '"
+must "a full disk is no verdict" bash -c "
+    (ulimit -f 8; '$build/abut' trade '$bar' --vary constants.cells=12 -o full >first 2>&1); '$build/abut' trade '$bar' --vary constants.cells=12 -o full 2>&1 | grep -q 'cells=12: done, '"
+must "no run at all" says 1 "no run came to its end" "$build/abut" trade "$bar" --vary constants.cells=12 --set 'time={end: end, dt: "2*h/c"}' -o none
+must "a place that cannot be written" says 2 "cannot be written" "$build/abut" trade "$bar" --vary constants.cells=12 -o never --write nowhere/best.yaml
 must "an unknown constant" says 2 "did you mean 'cells'" "$build/abut" trade "$bar" --vary constants.cels=1,2 -o never
 must "values that none goes" says 2 "no value of 'bodies.bar.basis' is accepted" "$build/abut" trade "$bar" --vary bodies.bar.basis=liner,gimpp -o never
 must "nothing to try" says 2 "nothing to try" "$build/abut" trade "$bar" -o never
