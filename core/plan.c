@@ -105,6 +105,12 @@ static void each_left_out_of_body(const ab_schedule *schedule, size_t b, item te
     }
 }
 
+static bool surface_points(const ab_scene *scene) {
+    for (size_t b = 0; b < scene->body_count; ++b)
+        if (scene->bodies[b].surface_points > 0.0) return true;
+    return false;
+}
+
 /* What a scene might cost and this one does not. */
 static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text) {
     const ab_scene *scene = schedule->scene;
@@ -115,7 +121,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
              scene->body_count < 2 ? "there is one body: no contact pass, no contact plugin"
                                    : "no contact is asked for: no contact pass, no contact plugin",
              NULL);
-    else if (!contact_asks(scene, SIZE_MAX, AB_NEED_SURFACE))
+    else if (!contact_asks(scene, SIZE_MAX, AB_NEED_SURFACE) && !surface_points(scene))
         tell(text, number++, "outlines", "no contact asks for the points and faces of outlines", NULL);
     tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
     if (scene->space == AB_SPACE_PLANE_STRAIN)

@@ -167,14 +167,19 @@ static const double ALARM = 0.1, ROUNDING = 1e-6; /* of the kinetic energy: a bo
 static void alarm_of_remainder(const ab_results *results, const ab_state_view *view, ab_report *report) {
     const double moved = ab_results_moved(results, view);
     if (!(fabs(view->remainder) > ALARM * moved) || !(fabs(view->remainder) > ROUNDING * view->total.kinetic)) return;
-    bool points = false, elements = false;
-    for (size_t b = 0; b < view->scene->body_count; b++)
-        if (!ab_domain_is_rigid(view->domains[b])) *(view->domains[b]->ops->cells != NULL ? &elements : &points) = true;
+    bool points = false, elements = false, linear = false, usl = false;
+    for (size_t b = 0; b < view->scene->body_count; b++) {
+        const ab_body_spec *spec = &view->scene->bodies[b];
+        if (ab_domain_is_rigid(view->domains[b])) continue;
+        *(view->domains[b]->ops->cells != NULL ? &elements : &points) = true;
+        linear = linear || (spec->basis != NULL && strcmp(spec->basis, "linear") == 0);
+        usl = usl || (spec->update != NULL && strcmp(spec->update, "usl") == 0);
+    }
     ab_report_warning(
         report, view->scene->mark_time,
-        "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s may help",
+        "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s%s%s may help",
         view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved,
-        points ? "a finer grid, basis gimp, update musl, " : "", elements ? "more elements, " : "",
+        points ? "a finer grid, " : "", linear ? "basis gimp, " : "", usl ? "update musl, " : "", elements ? "more elements, " : "",
         points || elements ? "or a smaller dt" : "a smaller dt");
 }
 

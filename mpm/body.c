@@ -144,7 +144,7 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
         if (!isfinite(x[0]) || !isfinite(x[1]))
             return ab_report_failure(report,
                                      "body '%s': point %llu has no finite place any more at t = %.9g s (step %ld): the run has blown up; "
-                                     "use a smaller dt, basis gimp, update musl",
+                                     "use a smaller dt; of bases and updates gimp and musl are the safest",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], step->time + step->dt, step->number);
         if (body->scene->side[side] != AB_SIDE_OUTFLOW)
             return ab_report_failure(report,
@@ -196,7 +196,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     if (!isfinite(kinetic))
         return ab_report_failure(report,
                                  "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown "
-                                 "up; use a smaller dt, basis gimp, update musl",
+                                 "up; use a smaller dt; of bases and updates gimp and musl are the safest",
                                  body->domain.spec->name, step->time + step->dt, step->number);
     if (low[0] < 0.0 || low[1] < 0.0 || high[0] > body->span[0] || high[1] > body->span[1]) AB_TRY(look_outside(body, step, report));
     if (far)
