@@ -5,22 +5,7 @@
 set -u
 build=${1:?the build folder}
 scratch=${ABUT_SCRATCH:-$(mktemp -d)}
-count=0 missed=0
-variant() { # what, scene, settings of --set
-    local what=$1 scene=$2 set=() status
-    shift 2
-    for s in "$@"; do set+=(--set "$s"); done
-    "$build/abut" run tests/verification/$scene.yaml --quiet -j "${threads:-1}" --strict -o "$scratch/$((++count))" "${set[@]}" 2>"$scratch/$count.log"
-    status=$?
-    if [ $status -eq "${wanted:-0}" ]; then
-        echo "passed  $what"
-    else
-        missed=$((missed + 1))
-        echo "MISSED  $what (exit $status)"
-        cat "$scratch/$count.log"
-        [ -f "$scratch/$count/summary.json" ] && python3 tests/verification/expects.py "$scratch/$count/summary.json" | grep '^MISSED' | sed 's/^/        /'
-    fi
-}
+. tests/verification/variant.bash
 variant "corner of 20 degrees" corner_touch constants.degrees=20
 variant "on a grid moved" corner_touch constants.degrees=31 constants.shift=0.77
 variant "points a quarter of a cell apart" corner_touch constants.degrees=60 constants.shift=0.5 'bodies.corner.surface={points: 0.25}' 'bodies.flat.surface={points: 0.5}'

@@ -5,22 +5,7 @@
 set -u
 build=${1:?the build folder}
 scratch=${ABUT_SCRATCH:-$(mktemp -d)}
-count=0 missed=0
-variant() { # what, scene, settings of --set
-    local what=$1 scene=$2 set=() status
-    shift 2
-    for s in "$@"; do set+=(--set "$s"); done
-    "$build/abut" run tests/verification/$scene.yaml --quiet -j "${threads:-1}" --strict -o "$scratch/$((++count))" "${set[@]}" 2>"$scratch/$count.log"
-    status=$?
-    if [ $status -eq "${wanted:-0}" ]; then
-        echo "passed  $what"
-    else
-        missed=$((missed + 1))
-        echo "MISSED  $what (exit $status)"
-        cat "$scratch/$count.log"
-        [ -f "$scratch/$count/summary.json" ] && python3 tests/verification/expects.py "$scratch/$count/summary.json" | grep '^MISSED' | sed 's/^/        /'
-    fi
-}
+. tests/verification/variant.bash
 both=(bodies.a.surface=points bodies.b.surface=points 'contact[0].algorithm=point-to-segment')
 variant "impact" impact "${both[@]}"
 variant "impact, turned" impact_turned "${both[@]}"
