@@ -273,6 +273,9 @@ void mpm_body_force_destroy(mpm_body *);
 /* trace.c */
 ab_status mpm_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 void mpm_trace_destroy(struct mpm_trace *);
+/* Number of the wanted node + 1 at each place of a square of `width` nodes that begins `before` nodes left of a tile and below it, 0 elsewhere. Nodes ascend, so those
+ * of a tile are a run. False: there is none. */
+bool mpm_trace_wanted(const mpm_tile *, int before, int width, const uint32_t *nodes, size_t count, uint32_t *wanted);
 /* trace_density.c: what one tile's points add to the slopes of the density (2 rows of ld) at the nodes, ascending */
 void mpm_trace_density(const mpm_body *, const mpm_tile *, const uint32_t *nodes, size_t count, double *gradient, size_t ld);
 

@@ -84,9 +84,8 @@ static size_t candidate_tiles(mpm_body *body, const uint32_t *nodes, size_t coun
     return tiles;
 }
 
-/* Number of the wanted node + 1 at each place of a tile's patch, 0 elsewhere. Nodes are ascending, so those of a tile are a run. */
-static bool wanted_in_patch(const mpm_tile *tile, int patch, const uint32_t *nodes, size_t count, uint32_t wanted[MPM_PATCH_MOST]) {
-    memset(wanted, 0, (size_t)(patch * patch) * sizeof *wanted);
+bool mpm_trace_wanted(const mpm_tile *tile, int before, int width, const uint32_t *nodes, size_t count, uint32_t *wanted) {
+    memset(wanted, 0, (size_t)(width * width) * sizeof *wanted);
     bool any = false;
     for (int s = 0; s < 9; ++s) {
         if (tile->around[s] < 0) continue;
@@ -100,10 +99,10 @@ static bool wanted_in_patch(const mpm_tile *tile, int patch, const uint32_t *nod
                 high = middle;
         }
         for (; low < count && nodes[low] < first + AB_TILE_NODES; ++low) {
-            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + 1,
-                      j = n / AB_TILE + (s / 3 - 1) * AB_TILE + 1;
-            if (i < 0 || j < 0 || i >= patch || j >= patch) continue;
-            wanted[j * patch + i] = (uint32_t)low + 1;
+            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + before,
+                      j = n / AB_TILE + (s / 3 - 1) * AB_TILE + before;
+            if (i < 0 || j < 0 || i >= width || j >= width) continue;
+            wanted[j * width + i] = (uint32_t)low + 1;
             any = true;
         }
     }
@@ -226,7 +225,7 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         for (size_t k = 0; k < tiles; ++k) {
             uint32_t wanted[MPM_PATCH_MOST];
             const mpm_tile *tile = body->tiles + t->tile_list[k];
-            if (wanted_in_patch(tile, body->kernel->patch, nodes, count, wanted) && !look_at_tile(body, tile, wanted, needs, &entries))
+            if (mpm_trace_wanted(tile, 1, body->kernel->patch, nodes, count, wanted) && !look_at_tile(body, tile, wanted, needs, &entries))
                 goto no_memory;
         }
     }

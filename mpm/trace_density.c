@@ -10,35 +10,9 @@ enum {
     WIDE = AB_TILE + 8
 }; /* nodes left of a tile and below it that its points can reach, some drift included; across all of them */
 
-/* Number of the wanted node + 1 at each place around a tile, 0 elsewhere. Nodes are ascending. False: there is none. */
-static bool wanted_around(const mpm_tile *tile, const uint32_t *nodes, size_t count, uint32_t wanted[WIDE * WIDE]) {
-    memset(wanted, 0, WIDE * WIDE * sizeof *wanted);
-    bool any = false;
-    for (int s = 0; s < 9; ++s) {
-        if (tile->around[s] < 0) continue;
-        const uint32_t first = (uint32_t)tile->around[s] * AB_TILE_NODES;
-        size_t low = 0, high = count;
-        while (low < high) {
-            const size_t middle = (low + high) / 2;
-            if (nodes[middle] < first)
-                low = middle + 1;
-            else
-                high = middle;
-        }
-        for (; low < count && nodes[low] < first + AB_TILE_NODES; ++low) {
-            const int n = (int)(nodes[low] - first), i = n % AB_TILE + (s % 3 - 1) * AB_TILE + BELOW,
-                      j = n / AB_TILE + (s / 3 - 1) * AB_TILE + BELOW;
-            if (i < 0 || j < 0 || i >= WIDE || j >= WIDE) continue;
-            wanted[j * WIDE + i] = (uint32_t)low + 1;
-            any = true;
-        }
-    }
-    return any;
-}
-
 void mpm_trace_density(const mpm_body *body, const mpm_tile *tile, const uint32_t *nodes, size_t count, double *gradient, size_t ld) {
     uint32_t wanted[WIDE * WIDE];
-    if (!wanted_around(tile, nodes, count, wanted)) return;
+    if (!mpm_trace_wanted(tile, BELOW, WIDE, nodes, count, wanted)) return;
     const double scale = body->inverse_h * body->inverse_h * body->inverse_h; /* a density, by the cell's size */
     const int32_t corner[2] = {tile->tx * AB_TILE - BELOW, tile->ty * AB_TILE - BELOW};
     for (uint32_t b = 0; b < tile->blocks; ++b) {
