@@ -1,6 +1,7 @@
 /* command.c: the table of commands, and what is common to them: finding the command, its help, reading the scene. */
 #include "core/commands.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/suggest.h"
@@ -111,6 +112,22 @@ int ab_command_main(int argc, char **argv, const ab_method *methods, size_t meth
     }
     ab_command_line_clear(&line);
     return flushed(status);
+}
+
+ab_status ab_command_scene_with(const ab_command_line *line, const ab_override *more, size_t count, ab_registry **registry,
+                                ab_scene **scene, ab_report *report) {
+    ab_command_line whole = *line;
+    whole.overrides = calloc(line->override_count + count + 1, sizeof *whole.overrides);
+    if (whole.overrides == NULL) {
+        fprintf(stderr, "abut: error: no memory\n");
+        return AB_FAILED;
+    }
+    if (line->override_count > 0) memcpy(whole.overrides, line->overrides, line->override_count * sizeof *more);
+    if (count > 0) memcpy(whole.overrides + line->override_count, more, count * sizeof *more);
+    whole.override_count = line->override_count + count;
+    const ab_status status = ab_command_scene(&whole, registry, scene, report);
+    free(whole.overrides);
+    return status;
 }
 
 ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report) {

@@ -25,18 +25,11 @@ static ab_status read_scene(const ab_command_line *line, ab_registry **registry,
     if (line->vary_count > 0) more[count++] = (ab_override){"trade.vary", vary.bytes};
     if (line->tolerance != NULL) more[count++] = (ab_override){"trade.tolerance", line->tolerance};
     if (line->seconds != NULL) more[count++] = (ab_override){"trade.seconds", line->seconds};
-    ab_command_line whole = *line;
-    whole.overrides = calloc(line->override_count + count + 1, sizeof *whole.overrides);
     ab_status status = AB_FAILED;
-    if (whole.overrides == NULL || vary.failed) {
+    if (vary.failed)
         fprintf(stderr, "abut: error: no memory\n");
-    } else {
-        if (line->override_count > 0) memcpy(whole.overrides, line->overrides, line->override_count * sizeof *more);
-        memcpy(whole.overrides + line->override_count, more, count * sizeof *more);
-        whole.override_count = line->override_count + count;
-        status = ab_command_scene(&whole, registry, scene, report);
-    }
-    free(whole.overrides);
+    else
+        status = ab_command_scene_with(line, more, count, registry, scene, report);
     ab_text_clear(&vary);
     return status;
 }
@@ -91,10 +84,10 @@ static ab_status check_place(const ab_command_line *line, ab_report *report) {
 static ab_status write_scene(const ab_command_line *line, const ab_trade *trade, size_t chosen, ab_report *report) {
     if (chosen == SIZE_MAX) return ab_report_failure(report, "%s is not written: no run met the tolerance or the time", line->write);
     ab_document *document = NULL;
-    AB_TRY(ab_document_read(trade->scene, &document, report));
+    AB_TRY(ab_document_read(trade->runs.scene, &document, report));
     ab_status status = AB_OK;
-    for (size_t i = 0; i < trade->override_count && status == AB_OK; i++)
-        status = ab_document_set(document, trade->overrides[i].path, trade->overrides[i].value, report);
+    for (size_t i = 0; i < trade->runs.override_count && status == AB_OK; i++)
+        status = ab_document_set(document, trade->runs.overrides[i].path, trade->runs.overrides[i].value, report);
     for (size_t k = 0; k < trade->spec->ladder_count; k++) {
         const ab_ladder *ladder = &trade->spec->ladders[k];
         for (size_t p = 0; p < ladder->path_count && status == AB_OK; p++)
@@ -102,7 +95,7 @@ static ab_status write_scene(const ab_command_line *line, const ab_trade *trade,
     }
     ab_text text = {0};
     char settings[2000];
-    ab_text_add(&text, "# %s with %s\n", trade->scene, ab_trade_settings(trade, &trade->trials[chosen], settings, sizeof settings));
+    ab_text_add(&text, "# %s with %s\n", trade->runs.scene, ab_trade_settings(trade, &trade->trials[chosen], settings, sizeof settings));
     ab_document_write(&text, document);
     if (status == AB_OK)
         status = text.failed ? ab_report_failure(report, "no memory for %s", line->write)
@@ -123,15 +116,15 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
     char folder[PATH_MAX + 32], base[PATH_MAX + 16];
     ab_command_folder(line->words[0], base, sizeof base);
     snprintf(folder, sizeof folder, "%s-trade", base);
-    ab_trade trade = {.scene = line->words[0],
-                      .folder = line->output != NULL ? line->output : folder,
-                      .plugin_path = line->plugin_path,
-                      .spec = &scene->trade,
-                      .overrides = line->overrides,
-                      .override_count = line->override_count,
-                      .jobs = line->jobs > 0 ? line->jobs : 1,
-                      .threads = line->threads > 0 ? line->threads : 1,
-                      .quiet = line->quiet};
+    ab_trade trade = {.runs = {.scene = line->words[0],
+                               .folder = line->output != NULL ? line->output : folder,
+                               .plugin_path = line->plugin_path,
+                               .overrides = line->overrides,
+                               .override_count = line->override_count,
+                               .jobs = line->jobs > 0 ? line->jobs : 1,
+                               .threads = line->threads > 0 ? line->threads : 1,
+                               .quiet = line->quiet},
+                      .spec = &scene->trade};
     ab_status status = ab_trade_plan(&trade, report);
     if (status == AB_OK) status = ab_trade_run(&trade, scene, registry, report);
     const bool stopped = status > 128;
@@ -144,9 +137,9 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
             if (chosen == SIZE_MAX) chosen = ab_trade_most_accurate(&trade, scene->trade.seconds);
             judged = write_scene(line, &trade, chosen, report);
         }
-        if (judged == AB_OK) printf("  %s holds trade.csv, trade.json and trade.svg\n", trade.folder);
+        if (judged == AB_OK) printf("  %s holds trade.csv, trade.json and trade.svg\n", trade.runs.folder);
         size_t done = 0;
-        for (size_t i = 0; i < trade.count; i++) done += trade.trials[i].state == AB_TRIAL_DONE;
+        for (size_t i = 0; i < trade.count; i++) done += trade.trials[i].run.state == AB_CHILD_DONE;
         if (judged == AB_OK && done == 0 && !stopped)
             judged = ab_report_failure(report, "no run came to its end; the table says why each did not");
         if (!stopped) status = judged;

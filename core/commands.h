@@ -32,7 +32,7 @@ typedef struct ab_command_line {
     const char *tolerance, *seconds; /* as written; NULL: not given */
     int jobs;                        /* 0: not given */
     const char *write;               /* --write FILE */
-    char **words; /* what is not an option: the scene, or the words of `abut plugins` */
+    char **words;                    /* what is not an option: the scene, or the words of `abut plugins` */
     int word_count;
     const ab_method *methods; /* main's table: how a body of each method is made */
     size_t method_count;
@@ -61,6 +61,9 @@ void ab_command_help(const ab_command *commands, const ab_command *command, FILE
 
 /* Reads the scene that the line names, with its plugins. On failure the report is printed and both are NULL. */
 ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report);
+/* The same with more overrides behind those of the line. */
+ab_status ab_command_scene_with(const ab_command_line *line, const ab_override *more, size_t count, ab_registry **registry,
+                                ab_scene **scene, ab_report *report);
 
 int ab_command_run(const ab_command_line *line);
 int ab_command_check(const ab_command_line *line);

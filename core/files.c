@@ -133,6 +133,16 @@ void ab_text_add_xml(ab_text *text, const char *string) {
     }
 }
 
+void ab_text_add_csv(ab_text *text, const char *field) {
+    if (strpbrk(field, ",\"\n") == NULL) {
+        ab_text_add(text, "%s", field);
+        return;
+    }
+    ab_text_add(text, "\"");
+    for (; *field != '\0'; field++) ab_text_add(text, *field == '"' ? "\"\"" : "%c", *field);
+    ab_text_add(text, "\"");
+}
+
 void ab_text_add_number(ab_text *text, double value) {
     if (!isfinite(value)) {
         ab_text_add(text, "null");

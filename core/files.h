@@ -20,6 +20,7 @@ typedef struct ab_text {
 void ab_text_add(ab_text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ab_text_add_escaped(ab_text *text, const char *string); /* a JSON string with its quotes */
 void ab_text_add_xml(ab_text *text, const char *string);     /* & < > " escaped */
+void ab_text_add_csv(ab_text *text, const char *field);      /* in quotes where it holds commas, quotes or ends of lines */
 void ab_text_add_number(ab_text *text, double value);        /* shortest JSON number that reads back the same; null for NaN and infinity */
 void ab_text_clear(ab_text *text);                           /* frees */
 

@@ -1,42 +1,26 @@
-/* trade.h: what accuracy costs: one scene run with several settings, its errors beside its cost. Commands that call for many runs share the runs.
+/* trade.h: what accuracy costs: one scene run with several settings, its errors beside its cost.
  *
- * A ladder is a setting with its values, from cheap to dear; the runs are all combinations. Each run is a process of its own, so that its time and memory are its own and that
- * a run that fails takes nothing with it; each has a folder under DIR/runs, and one that is there already, of the same scene, is not run again. */
+ * A ladder is a setting with its values, from cheap to dear; the runs (child_runs.h) are all combinations. */
 #ifndef AB_TRADE_H
 #define AB_TRADE_H
 
 #include <stdio.h>
 
+#include "core/child_runs.h"
 #include "core/document.h"
 #include "core/files.h"
 #include "core/scene.h"
 
 enum { AB_TRADE_LADDERS = 8, AB_TRADE_VALUES = 64, AB_TRADE_PATHS = 16, AB_TRADE_RUNS = 4096 };
 
-typedef enum ab_trial_state {
-    AB_TRIAL_WAITING = 0,
-    AB_TRIAL_RUNNING,
-    AB_TRIAL_DONE,
-    AB_TRIAL_FAILED,  /* the run broke off: blow-up, no memory */
-    AB_TRIAL_REFUSED, /* the settings do not go together: exit 2 */
-    AB_TRIAL_LIMIT,   /* stopped at the limit of seconds */
-    AB_TRIAL_SKIPPED  /* hopeless: a cheaper run of the same ladder was over the limit */
-} ab_trial_state;
-
 typedef struct ab_trial { /* one run */
+    ab_child run;
     size_t rung[AB_TRADE_LADDERS];
-    ab_trial_state state;
-    char *folder, *why;     /* why: it is not done; one line */
-    bool kept;              /* from an earlier call */
-    double wall, cpu;       /* s, of the process */
-    double bytes;           /* largest resident set */
     double remainder;       /* of the ledger, relative to the largest energy that moved */
     double error;           /* the largest of `errors`; NaN: not known */
     double *errors;         /* per judge */
     double *values, *peaks; /* per judge: what was measured; of a monitor, its largest size in the run */
     bool front;             /* no other run is both cheaper and better */
-    int process;            /* while it runs */
-    double started;
 } ab_trial;
 
 typedef struct ab_judge { /* what errors are measured of: an expect, or a monitor's last value against the best that the runs know */
@@ -46,13 +30,8 @@ typedef struct ab_judge { /* what errors are measured of: an expect, or a monito
 } ab_judge;
 
 typedef struct ab_trade {
-    const char *scene, *folder, *plugin_path;
+    ab_child_runs runs;
     const ab_trade_spec *spec;
-    const ab_override *overrides; /* of the command line, before the settings */
-    size_t override_count;
-    int jobs, threads;
-    bool quiet;
-    char fingerprint[40]; /* of the scene file, its overrides and the program */
     ab_trial *trials;
     size_t count;
     ab_judge *judges;

@@ -15,7 +15,7 @@ static ab_status choose_judges(ab_trade *trade, const ab_scene *scene, ab_report
     const size_t count = chosen ? trade->spec->judge_count : monitors ? scene->monitor_count : scene->expect_count;
     if (count == 0)
         return ab_report_failure(report, "%s has neither expects nor monitors, so there is nothing to measure an error of; add one",
-                                 trade->scene);
+                                 trade->runs.scene);
     trade->judges = calloc(count, sizeof *trade->judges);
     if (trade->judges == NULL) return ab_report_failure(report, "no memory to judge the runs");
     trade->judge_count = count;
@@ -36,14 +36,14 @@ static ab_status choose_judges(ab_trade *trade, const ab_scene *scene, ab_report
 }
 
 static void fail(ab_trial *trial, const char *why) {
-    trial->state = AB_TRIAL_FAILED;
-    free(trial->why);
-    trial->why = strdup(why);
+    trial->run.state = AB_CHILD_FAILED;
+    free(trial->run.why);
+    trial->run.why = strdup(why);
 }
 
 static void read_summary(const ab_trade *trade, ab_trial *trial, ab_report *report) {
     char path[4200];
-    snprintf(path, sizeof path, "%s/summary.json", trial->folder);
+    snprintf(path, sizeof path, "%s/summary.json", trial->run.folder);
     ab_document *document = NULL;
     if (ab_document_read(path, &document, report) != AB_OK) {
         fail(trial, "its summary.json cannot be read; remove the run's folder and begin again");
@@ -66,7 +66,7 @@ static void read_summary(const ab_trade *trade, ab_trial *trial, ab_report *repo
 static void read_history(const ab_trade *trade, ab_trial *trial) {
     enum { FIELD = 400 };
     char path[4200], field[FIELD];
-    snprintf(path, sizeof path, "%s/history.csv", trial->folder);
+    snprintf(path, sizeof path, "%s/history.csv", trial->run.folder);
     FILE *file = fopen(path, "r");
     size_t used = 0, column = 0, row = 0, *judge_of = NULL, columns = 0;
     for (int c; file != NULL && (c = getc(file)) != EOF;) {
@@ -100,7 +100,7 @@ static void read_history(const ab_trade *trade, ab_trial *trial) {
 static ab_trial *at(const ab_trade *trade, const size_t rung[AB_TRADE_LADDERS]) {
     size_t place = 0;
     for (size_t k = 0; k < trade->spec->ladder_count; k++) place = place * trade->spec->ladders[k].value_count + rung[k];
-    return trade->trials[place].state == AB_TRIAL_DONE ? &trade->trials[place] : NULL;
+    return trade->trials[place].run.state == AB_CHILD_DONE ? &trade->trials[place] : NULL;
 }
 
 static ab_trial *finest(const ab_trade *trade) {
@@ -109,7 +109,7 @@ static ab_trial *finest(const ab_trade *trade) {
     for (size_t i = 0; i < trade->count; i++) {
         size_t height = 1;
         for (size_t k = 0; k < trade->spec->ladder_count; k++) height += trade->trials[i].rung[k];
-        if (trade->trials[i].state == AB_TRIAL_DONE && height >= most) most = height, best = &trade->trials[i];
+        if (trade->trials[i].run.state == AB_CHILD_DONE && height >= most) most = height, best = &trade->trials[i];
     }
     return best;
 }
@@ -158,7 +158,7 @@ static void find_references(ab_trade *trade) {
             limits++;
         const double size = best->peaks[k]; /* not that of the last value, which may well be next to 0 */
         for (size_t i = 0; i < trade->count; i++)
-            if (trade->trials[i].state == AB_TRIAL_DONE)
+            if (trade->trials[i].run.state == AB_CHILD_DONE)
                 trade->trials[i].errors[k] = size > 0 ? fabs(trade->trials[i].values[k] - judge->reference) / size : 0;
         if (judge->reference == best->values[k]) best->errors[k] = NAN; /* it is its own measure */
     }
@@ -175,12 +175,12 @@ static void find_references(ab_trade *trade) {
 static void find_front(ab_trade *trade) {
     for (size_t i = 0; i < trade->count; i++) {
         ab_trial *trial = &trade->trials[i];
-        trial->front = trial->state == AB_TRIAL_DONE && isfinite(trial->error);
+        trial->front = trial->run.state == AB_CHILD_DONE && isfinite(trial->error);
         for (size_t k = 0; k < trade->count && trial->front; k++) {
             const ab_trial *other = &trade->trials[k];
-            if (k == i || other->state != AB_TRIAL_DONE || !isfinite(other->error)) continue;
-            const bool no_worse = other->error <= trial->error && other->cpu <= trial->cpu;
-            if (no_worse && (other->error < trial->error || other->cpu < trial->cpu || k < i)) trial->front = false;
+            if (k == i || other->run.state != AB_CHILD_DONE || !isfinite(other->error)) continue;
+            const bool no_worse = other->error <= trial->error && other->run.cpu <= trial->run.cpu;
+            if (no_worse && (other->error < trial->error || other->run.cpu < trial->run.cpu || k < i)) trial->front = false;
         }
     }
 }
@@ -190,14 +190,14 @@ ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *repo
     const bool monitors = trade->judges[0].monitor;
     for (size_t i = 0; i < trade->count; i++) {
         ab_trial *trial = &trade->trials[i];
-        if (trial->state != AB_TRIAL_DONE) continue;
+        if (trial->run.state != AB_CHILD_DONE) continue;
         read_summary(trade, trial, report);
-        if (monitors && trial->state == AB_TRIAL_DONE) read_history(trade, trial);
+        if (monitors && trial->run.state == AB_CHILD_DONE) read_history(trade, trial);
     }
     if (monitors) find_references(trade);
     for (size_t i = 0; i < trade->count; i++) {
         ab_trial *trial = &trade->trials[i];
-        trial->error = trial->state == AB_TRIAL_DONE ? 0 : NAN;
+        trial->error = trial->run.state == AB_CHILD_DONE ? 0 : NAN;
         for (size_t k = 0; k < trade->judge_count; k++)
             trial->error = trial->error >= trial->errors[k] ? trial->error : trial->errors[k]; /* NaN stays: not known */
     }
@@ -208,8 +208,8 @@ ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *repo
 size_t ab_trade_cheapest(const ab_trade *trade, double tolerance) {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < trade->count; i++)
-        if (trade->trials[i].state == AB_TRIAL_DONE && trade->trials[i].error <= tolerance &&
-            (best == SIZE_MAX || trade->trials[i].cpu < trade->trials[best].cpu))
+        if (trade->trials[i].run.state == AB_CHILD_DONE && trade->trials[i].error <= tolerance &&
+            (best == SIZE_MAX || trade->trials[i].run.cpu < trade->trials[best].run.cpu))
             best = i;
     return best;
 }
@@ -217,7 +217,7 @@ size_t ab_trade_cheapest(const ab_trade *trade, double tolerance) {
 size_t ab_trade_most_accurate(const ab_trade *trade, double seconds) {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < trade->count; i++)
-        if (trade->trials[i].state == AB_TRIAL_DONE && trade->trials[i].cpu <= seconds && isfinite(trade->trials[i].error) &&
+        if (trade->trials[i].run.state == AB_CHILD_DONE && trade->trials[i].run.cpu <= seconds && isfinite(trade->trials[i].error) &&
             (best == SIZE_MAX || trade->trials[i].error < trade->trials[best].error))
             best = i;
     return best;

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/picture.h"
 #include "core/trade.h"
 
 enum { WIDE = 860, HIGH = 560, LEFT = 80, RIGHT = 250, ABOVE = 40, BELOW = 60 };
@@ -20,90 +21,78 @@ static axis axis_of(double least, double most, double from, double to) {
     return a;
 }
 
-static void line(ab_text *svg, double x0, double y0, double x1, double y1, const char *style) {
-    ab_text_add(svg, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" style=\"%s\"/>\n", x0, y0, x1, y1, style);
-}
-
-static void words(ab_text *svg, double x, double y, const char *anchor, const char *text) {
-    ab_text_add(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">", x, y, anchor);
-    ab_text_add_xml(svg, text);
-    ab_text_add(svg, "</text>\n");
-}
-
 static void grid(ab_text *svg, const axis *x, const axis *y) {
     char label[32];
     for (double d = x->low; d <= x->high; d++) {
         const double at = place(x, pow(10, d));
-        line(svg, at, y->from, at, y->to, "stroke:#ddd");
+        ab_picture_line(svg, at, y->from, at, y->to, "stroke:#ddd");
         snprintf(label, sizeof label, "%g", pow(10, d));
-        words(svg, at, y->from + 18, "middle", label);
+        ab_picture_words(svg, at, y->from + 18, "middle", label);
     }
     for (double d = y->low; d <= y->high; d++) {
         const double at = place(y, pow(10, d));
-        line(svg, x->from, at, x->to, at, "stroke:#ddd");
+        ab_picture_line(svg, x->from, at, x->to, at, "stroke:#ddd");
         snprintf(label, sizeof label, "1e%g", d);
-        words(svg, x->from - 8, at + 4, "end", label);
+        ab_picture_words(svg, x->from - 8, at + 4, "end", label);
     }
-    words(svg, 0.5 * (x->from + x->to), y->from + 42, "middle", "processor time, s");
+    ab_picture_words(svg, 0.5 * (x->from + x->to), y->from + 42, "middle", "processor time, s");
     ab_text_add(svg, "<g transform=\"translate(22 %.1f) rotate(-90)\">", 0.5 * (y->from + y->to));
-    words(svg, 0, 0, "middle", "error");
+    ab_picture_words(svg, 0, 0, "middle", "error");
     ab_text_add(svg, "</g>\n");
 }
 
-static bool shown(const ab_trial *trial) { return trial->state == AB_TRIAL_DONE && isfinite(trial->error) && trial->cpu > 0; }
+static bool shown(const ab_trial *trial) { return trial->run.state == AB_CHILD_DONE && isfinite(trial->error) && trial->run.cpu > 0; }
 
 void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
     for (size_t i = 0; i < trade->count; i++) {
         const ab_trial *t = &trade->trials[i];
         if (!shown(t)) continue;
-        low[0] = fmin(low[0], t->cpu), high[0] = fmax(high[0], t->cpu);
+        low[0] = fmin(low[0], t->run.cpu), high[0] = fmax(high[0], t->run.cpu);
         if (t->error > 0) low[1] = fmin(low[1], t->error), high[1] = fmax(high[1], t->error);
     }
-    ab_text_add(
-        svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" style=\"font:12px sans-serif\">\n",
-        WIDE, HIGH, WIDE, HIGH);
-    ab_text_add(svg, "<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n");
-    words(svg, LEFT, 24, "start", trade->scene);
+    ab_picture_begin(svg, WIDE, HIGH);
+    ab_picture_words(svg, LEFT, 24, "start", trade->runs.scene);
     if (!(high[0] > 0)) {
-        words(svg, LEFT, 80, "start", "no run has an error");
-        ab_text_add(svg, "</svg>\n");
+        ab_picture_words(svg, LEFT, 80, "start", "no run has an error");
+        ab_picture_end(svg);
         return;
     }
     if (!(high[1] > 0)) low[1] = 1e-16, high[1] = 1e-15;
     const axis x = axis_of(low[0], high[0], LEFT, WIDE - RIGHT), y = axis_of(low[1], high[1], HIGH - BELOW, ABOVE);
     grid(svg, &x, &y);
     if (trade->spec->tolerance > pow(10, y.low) && trade->spec->tolerance < pow(10, y.high))
-        line(svg, x.from, place(&y, trade->spec->tolerance), x.to, place(&y, trade->spec->tolerance), "stroke:#999;stroke-dasharray:6 4");
+        ab_picture_line(svg, x.from, place(&y, trade->spec->tolerance), x.to, place(&y, trade->spec->tolerance),
+                        "stroke:#999;stroke-dasharray:6 4");
     /* the front from cheap to dear: what is to be had for so much time */
     double before[2] = {NAN, NAN}, cost = 0, label = ABOVE;
     char settings[2000];
     for (;;) {
         const ab_trial *next = NULL;
         for (size_t i = 0; i < trade->count; i++)
-            if (trade->trials[i].front && shown(&trade->trials[i]) && trade->trials[i].cpu > cost &&
-                (next == NULL || trade->trials[i].cpu < next->cpu))
+            if (trade->trials[i].front && shown(&trade->trials[i]) && trade->trials[i].run.cpu > cost &&
+                (next == NULL || trade->trials[i].run.cpu < next->run.cpu))
                 next = &trade->trials[i];
         if (next == NULL) break;
-        cost = next->cpu;
-        const double at[2] = {place(&x, next->cpu), place(&y, next->error > 0 ? next->error : pow(10, y.low))};
+        cost = next->run.cpu;
+        const double at[2] = {place(&x, next->run.cpu), place(&y, next->error > 0 ? next->error : pow(10, y.low))};
         if (isfinite(before[0])) {
-            line(svg, before[0], before[1], at[0], before[1], "stroke:#c22;stroke-width:1.5");
-            line(svg, at[0], before[1], at[0], at[1], "stroke:#c22;stroke-width:1.5");
+            ab_picture_line(svg, before[0], before[1], at[0], before[1], "stroke:#c22;stroke-width:1.5");
+            ab_picture_line(svg, at[0], before[1], at[0], at[1], "stroke:#c22;stroke-width:1.5");
         }
         label = fmax(label + 14, at[1]);
         if (label > HIGH - 8) label = HIGH - 8;
-        line(svg, at[0], at[1], x.to + 6, label - 4, "stroke:#c22;stroke-width:0.3");
-        words(svg, x.to + 8, label, "start", ab_trade_settings(trade, next, settings, sizeof settings));
+        ab_picture_line(svg, at[0], at[1], x.to + 6, label - 4, "stroke:#c22;stroke-width:0.3");
+        ab_picture_words(svg, x.to + 8, label, "start", ab_trade_settings(trade, next, settings, sizeof settings));
         before[0] = at[0], before[1] = at[1];
     }
     for (size_t i = 0; i < trade->count; i++) {
         const ab_trial *t = &trade->trials[i];
         if (!shown(t)) continue;
-        ab_text_add(svg, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"><title>", place(&x, t->cpu),
+        ab_text_add(svg, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"><title>", place(&x, t->run.cpu),
                     place(&y, t->error > 0 ? t->error : pow(10, y.low)), t->front ? "#c22" : "#468");
         ab_text_add_xml(svg, ab_trade_settings(trade, t, settings, sizeof settings));
-        ab_text_add(svg, ": error %.2g, %.3g s</title></circle>\n", t->error, t->cpu);
+        ab_text_add(svg, ": error %.2g, %.3g s</title></circle>\n", t->error, t->run.cpu);
     }
-    ab_text_add(svg, "</svg>\n");
+    ab_picture_end(svg);
 }

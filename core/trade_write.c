@@ -11,9 +11,9 @@ static const char *const STATES[] = {"not run", "running", "done", "failed", "re
 static const ab_trade *sorting; /* qsort has no argument to spare */
 static int by_cost(const void *a, const void *b) {
     const ab_trial *x = &sorting->trials[*(const size_t *)a], *y = &sorting->trials[*(const size_t *)b];
-    const bool x_done = x->state == AB_TRIAL_DONE, y_done = y->state == AB_TRIAL_DONE;
+    const bool x_done = x->run.state == AB_CHILD_DONE, y_done = y->run.state == AB_CHILD_DONE;
     if (x_done != y_done) return x_done ? -1 : 1;
-    if (x_done && x->cpu != y->cpu) return x->cpu < y->cpu ? -1 : 1;
+    if (x_done && x->run.cpu != y->run.cpu) return x->run.cpu < y->run.cpu ? -1 : 1;
     return *(const size_t *)a < *(const size_t *)b ? -1 : 1;
 }
 static size_t *sorted(const ab_trade *trade) {
@@ -49,13 +49,13 @@ static void sentence(const ab_trade *trade, FILE *stream) {
         fprintf(stream, "No run has an error of %g or less", trade->spec->tolerance);
     else
         fprintf(stream, "The cheapest within an error of %g is %s (%.3g s, error %.2g)", trade->spec->tolerance,
-                ab_trade_settings(trade, &trade->trials[cheap], settings, sizeof settings), trade->trials[cheap].cpu,
+                ab_trade_settings(trade, &trade->trials[cheap], settings, sizeof settings), trade->trials[cheap].run.cpu,
                 trade->trials[cheap].error);
     if (good == SIZE_MAX)
         fprintf(stream, "; no run with a known error takes %g s or less.\n", trade->spec->seconds);
     else
         fprintf(stream, "; the most accurate within %g s is %s (%.3g s, error %.2g).\n", trade->spec->seconds,
-                ab_trade_settings(trade, &trade->trials[good], settings, sizeof settings), trade->trials[good].cpu,
+                ab_trade_settings(trade, &trade->trials[good], settings, sizeof settings), trade->trials[good].run.cpu,
                 trade->trials[good].error);
 }
 
@@ -72,8 +72,9 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
             const int width = width_of(trade, k);
             fprintf(stream, "%-*.*s  ", width, width, trade->spec->ladders[k].values[trial->rung[k]]);
         }
-        if (trial->state != AB_TRIAL_DONE) {
-            fprintf(stream, "%s%s%.300s\n", STATES[trial->state], trial->why != NULL ? ": " : "", trial->why != NULL ? trial->why : "");
+        if (trial->run.state != AB_CHILD_DONE) {
+            fprintf(stream, "%s%s%.300s\n", STATES[trial->run.state], trial->run.why != NULL ? ": " : "",
+                    trial->run.why != NULL ? trial->run.why : "");
             left++;
             continue;
         }
@@ -81,7 +82,7 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
             fprintf(stream, "%10.2e", trial->error);
         else
             fprintf(stream, "%10s", trade->judges[0].monitor ? "finest" : "none");
-        fprintf(stream, "  %10.3g  %9.3g  %8.3g  %+10.1e  %s\n", trial->cpu, trial->wall, 1e-6 * trial->bytes, trial->remainder,
+        fprintf(stream, "  %10.3g  %9.3g  %8.3g  %+10.1e  %s\n", trial->run.cpu, trial->run.wall, 1e-6 * trial->run.bytes, trial->remainder,
                 worst(trade, trial));
     }
     free(order);
@@ -94,38 +95,29 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
     sentence(trade, stream);
 }
 
-static void csv_field(ab_text *text, const char *field) {
-    if (strpbrk(field, ",\"\n") == NULL) {
-        ab_text_add(text, "%s", field);
-        return;
-    }
-    ab_text_add(text, "\"");
-    for (; *field != '\0'; field++) ab_text_add(text, *field == '"' ? "\"\"" : "%c", *field);
-    ab_text_add(text, "\"");
-}
 static void csv_number(ab_text *text, double value) {
     ab_text_add(text, ",");
     if (isfinite(value)) ab_text_add_number(text, value);
 }
 
 static void write_csv(const ab_trade *trade, ab_text *text) {
-    for (size_t k = 0; k < trade->spec->ladder_count; k++) csv_field(text, trade->spec->ladders[k].name), ab_text_add(text, ",");
+    for (size_t k = 0; k < trade->spec->ladder_count; k++) ab_text_add_csv(text, trade->spec->ladders[k].name), ab_text_add(text, ",");
     ab_text_add(text, "outcome,front,error,cpu_seconds,wall_seconds,peak_bytes,remainder");
     for (size_t k = 0; k < trade->judge_count; k++) {
         ab_text_add(text, ",");
-        csv_field(text, trade->judges[k].name);
+        ab_text_add_csv(text, trade->judges[k].name);
     }
     ab_text_add(text, "\n");
     for (size_t i = 0; i < trade->count; i++) {
         const ab_trial *trial = &trade->trials[i];
         for (size_t k = 0; k < trade->spec->ladder_count; k++)
-            csv_field(text, trade->spec->ladders[k].values[trial->rung[k]]), ab_text_add(text, ",");
-        ab_text_add(text, "%s,%d", STATES[trial->state], trial->front);
-        const bool ran = trial->state == AB_TRIAL_DONE || trial->state == AB_TRIAL_FAILED;
+            ab_text_add_csv(text, trade->spec->ladders[k].values[trial->rung[k]]), ab_text_add(text, ",");
+        ab_text_add(text, "%s,%d", STATES[trial->run.state], trial->front);
+        const bool ran = trial->run.state == AB_CHILD_DONE || trial->run.state == AB_CHILD_FAILED;
         csv_number(text, trial->error);
-        csv_number(text, ran ? trial->cpu : NAN);
-        csv_number(text, ran ? trial->wall : NAN);
-        csv_number(text, ran ? trial->bytes : NAN);
+        csv_number(text, ran ? trial->run.cpu : NAN);
+        csv_number(text, ran ? trial->run.wall : NAN);
+        csv_number(text, ran ? trial->run.bytes : NAN);
         csv_number(text, trial->remainder);
         for (size_t k = 0; k < trade->judge_count; k++) csv_number(text, trial->errors[k]);
         ab_text_add(text, "\n");
@@ -151,7 +143,7 @@ static void json_settings(const ab_trade *trade, const ab_trial *trial, ab_text 
 
 static void write_json(const ab_trade *trade, ab_text *text) {
     ab_text_add(text, "{\n  \"scene\": ");
-    ab_text_add_escaped(text, trade->scene);
+    ab_text_add_escaped(text, trade->runs.scene);
     ab_text_add(text, ",\n  \"reference\": ");
     ab_text_add_escaped(text, trade->reference);
     json_number(text, "tolerance", trade->spec->tolerance);
@@ -168,14 +160,14 @@ static void write_json(const ab_trade *trade, ab_text *text) {
         const ab_trial *trial = &trade->trials[i];
         ab_text_add(text, "%s\n    {\"settings\": ", i > 0 ? "," : "");
         json_settings(trade, trial, text);
-        ab_text_add(text, ", \"outcome\": \"%s\", \"folder\": ", STATES[trial->state]);
-        ab_text_add_escaped(text, trial->folder);
-        if (trial->why != NULL) ab_text_add(text, ", \"why\": "), ab_text_add_escaped(text, trial->why);
+        ab_text_add(text, ", \"outcome\": \"%s\", \"folder\": ", STATES[trial->run.state]);
+        ab_text_add_escaped(text, trial->run.folder);
+        if (trial->run.why != NULL) ab_text_add(text, ", \"why\": "), ab_text_add_escaped(text, trial->run.why);
         ab_text_add(text, ", \"front\": %s", trial->front ? "true" : "false");
         json_number(text, "error", trial->error);
-        json_number(text, "cpu_seconds", trial->cpu);
-        json_number(text, "wall_seconds", trial->wall);
-        json_number(text, "peak_bytes", trial->bytes);
+        json_number(text, "cpu_seconds", trial->run.cpu);
+        json_number(text, "wall_seconds", trial->run.wall);
+        json_number(text, "peak_bytes", trial->run.bytes);
         json_number(text, "remainder", trial->remainder);
         ab_text_add(text, ", \"errors\": {");
         for (size_t k = 0; k < trade->judge_count; k++) {
@@ -195,7 +187,7 @@ ab_status ab_trade_write(const ab_trade *trade, ab_report *report) {
     for (int i = 0; i < 3; i++) {
         ab_text text = {0};
         writers[i](trade, &text);
-        char *path = ab_path_join(trade->folder, names[i]);
+        char *path = ab_path_join(trade->runs.folder, names[i]);
         const ab_status status = text.failed || path == NULL ? ab_report_failure(report, "no memory for %s", names[i])
                                                              : ab_file_replace(path, text.bytes, text.count, report);
         free(path);
