@@ -278,6 +278,7 @@ static ab_status create_half(contact_pair *pair, const ab_loaded_class *loaded, 
     char who[96];
     snprintf(who, sizeof who, "contact '%s' of '%s' and '%s'", loaded->class_.name, pair->a->spec->name, pair->b->spec->name);
     ab_service_init(service, who);
+    service->guarded = loaded->guarded;
     service->host.reserve = reserve;
     if (loaded->class_.create && loaded->class_.create(&service->host, settings, self) != 0)
         return ab_report_error(report, pair->spec->mark, "%s refused its settings: %s", who,

@@ -13,6 +13,7 @@
 #endif
 
 static int command_plugins(const ab_command_line *line) {
+    if (line->word_count && !strcmp(line->words[0], "new")) return ab_command_plugin_new(line);
     char *words[8] = {(char[]){"plugins"}};
     for (int i = 0; i < line->word_count; i++) words[i + 1] = line->words[i];
     return ab_command_plugins(line->word_count + 1, words, line->plugin_path);
@@ -45,9 +46,13 @@ static const ab_command commands[] = {
      AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_VARY | AB_OPTION_TOLERANCE |
          AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE,
      1, 1, ab_command_trade},
-    {"plugins", "[show NAME]", "list the plugins found, or tell all about one: settings with unit, range, default",
-     "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.", AB_OPTION_PLUGIN_PATH, 0, 2,
-     command_plugins},
+    {"plugins", "[show NAME | new KIND NAME]",
+     "list the plugins found, tell all about one (settings with unit, range, default), or begin one",
+     "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.\n"
+     "  abut plugins new KIND NAME     writes a plugin that works, to be changed: source, CMakeLists.txt and a scene; KIND is material, "
+     "finder or\n"
+     "                                 response (of contact). Into the folder NAME, or -o; nothing that is there is overwritten",
+     AB_OPTION_PLUGIN_PATH | AB_OPTION_OUTPUT, 0, 3, command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
     {"extremes", "SCENE", "how far a setting goes", NULL, 0, 0, 0, NULL},

@@ -76,4 +76,7 @@ void ab_command_folder(const char *scene, char *folder, size_t size);
 /* core/command_plugins.c: argv[0] is "plugins", then the words behind it. */
 int ab_command_plugins(int argc, char **argv, const char *plugin_path);
 
+/* `abut plugins new KIND NAME`: core/command_plugin_new.c; words[0] is "new". */
+int ab_command_plugin_new(const ab_command_line *line);
+
 #endif

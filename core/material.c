@@ -92,6 +92,7 @@ ab_status ab_material_open(const ab_material_spec *material, ab_service *service
     char who[96];
     snprintf(who, sizeof who, "material '%s' (%s)", material->name, class_->name);
     ab_service_init(service, who);
+    service->guarded = loaded->guarded;
     const char *why = service->message;
     if (class_->create && class_->create(&service->host, material->settings, self) != 0)
         return ab_report_error(report, material->mark, "material '%s' refused its settings: %s", material->name,

@@ -273,8 +273,9 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
 
 static void text_plugin(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {
     (void)number;
-    ab_text_add(text, "  %s %s %s: %s\n    %s\n", kind_name(loaded->class_.kind), name,
-                loaded->plugin_version ? loaded->plugin_version : "", why, loaded->path ? loaded->path : "");
+    ab_text_add(text, "  %s %s %s: %s%s\n    %s\n", kind_name(loaded->class_.kind), name,
+                loaded->plugin_version ? loaded->plugin_version : "", why,
+                loaded->guarded ? "; every call under guard (checked: true)" : "", loaded->path ? loaded->path : "");
 }
 
 static void text_left_out(ab_text *text, size_t number, const char *name, const char *why, const ab_loaded_class *loaded) {

@@ -17,6 +17,7 @@ typedef struct ab_loaded_class {
     ab_contact_ops contact;
     const char *path; /* file it came from */
     const char *plugin_name, *plugin_version, *plugin_licence;
+    const struct ab_loaded_class *guarded; /* the class that this one stands before as its guard (core/guard.h); NULL: none */
 } ab_loaded_class;
 
 /* Search path: `paths` (colon separated, from --plugin-path; may be NULL), then $ABUT_PLUGIN_PATH, then the folder of built-ins (beside the
@@ -46,10 +47,11 @@ const ab_loaded_class *ab_registry_class(const ab_registry *registry, size_t ind
 
 /* Host services for create(). One ab_service per instance, which must not move afterwards; messages are kept for the error that follows. */
 typedef struct ab_service {
-    ab_host host;      /* pass &service.host to create; whoever has a finder sets host.reserve (and its context) before */
-    char message[512]; /* last message */
-    char who[96];      /* "material 'soil' (von-mises)" */
-    atomic_flag busy;  /* while a thread writes message */
+    ab_host host;                   /* pass &service.host to create; whoever has a finder sets host.reserve (and its context) before */
+    char message[512];              /* last message */
+    char who[96];                   /* "material 'soil' (von-mises)" */
+    atomic_flag busy;               /* while a thread writes message */
+    const ab_loaded_class *guarded; /* of the class whose create gets this host; set it after ab_service_init */
 } ab_service;
 void ab_service_init(ab_service *service, const char *who);
 

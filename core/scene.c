@@ -35,6 +35,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_output(r, v[TOP_OUTPUT]);
     ab_scene_take_expects(r, v[TOP_EXPECT]);
     ab_scene_take_trade(r, v[TOP_TRADE]);
+    ab_scene_take_checked(r, v[TOP_CHECKED]); /* last: everything else reads what the plugins themselves declare */
 }
 
 static void set_defaults(ab_scene *scene) {

@@ -199,6 +199,7 @@ typedef struct ab_scene {
     ab_space space;
     int dimension;
     ab_number gravity[2];                /* m/s2, formulas of t */
+    bool checked;                        /* plugins run under guard (core/guard.h) */
     bool watch;                          /* end a run that makes energy */
     double watch_energy;                 /* as a part of what was put into it */
     double damping_local, damping_until; /* until: s, INFINITY when always */

@@ -35,6 +35,9 @@ static const ab_key top[] = {
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_LATER, .help = "leave the key out"},
+    [TOP_CHECKED] = {"checked", AB_KEY_FLAG, .initial = "false",
+                     .help = "watch every call of every plugin: arrays that end where memory ends, old state read only, finite numbers, losses not "
+                             "negative, weights that sum to 1; a broken promise ends the run. Same results, slower; for plugins under development"},
     [TOP_WATCHDOG] = {"watchdog", AB_KEY_SECTION, .help = "when a run is ended because it makes energy"},
     [TOP_TRADE] = {"trade", AB_KEY_SECTION, .help = "settings that `abut trade` tries; a run does not look at them"},
 };

@@ -25,6 +25,7 @@ enum {
     TOP_BOUNDARIES,
     TOP_CHECKPOINT,
     TOP_TRADE,
+    TOP_CHECKED,
     TOP_WATCHDOG,
     TOP_KEYS
 };

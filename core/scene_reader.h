@@ -22,6 +22,7 @@ typedef struct ab_scene_reader {
 /* One section each; `node` NULL: not written. Mistakes go to the report; what could not be read keeps its default. */
 void ab_scene_take_constants(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_damping(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_checked(ab_scene_reader *r, const ab_node *node);
 void ab_scene_take_watchdog(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_time(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_grid(ab_scene_reader *reader, const ab_node *node);

@@ -1,0 +1,13 @@
+# Writes the templates of `abut plugins new` into a C source: embed.cmake, called with -DFOLDER= -DOUT= .
+file(GLOB templates ${FOLDER}/*)
+set(text "/* Made from plugins/new by plugins/embed.cmake. */\n#include \"core/plugin_new.h\"\n")
+set(table "")
+foreach(template ${templates})
+  get_filename_component(name ${template} NAME)
+  string(MAKE_C_IDENTIFIER ${name} identifier)
+  file(READ ${template} bytes HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  string(APPEND text "static const char ${identifier}[] = {${bytes}0};\n")
+  string(APPEND table "  {\"${name}\", ${identifier}},\n")
+endforeach()
+file(WRITE ${OUT} "${text}const ab_plugin_template ab_plugin_templates[] = {\n${table}  {0, 0},\n};\n")
