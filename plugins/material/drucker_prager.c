@@ -1,0 +1,177 @@
+/* drucker_prager.c: a cone around the hydrostatic axis, matched to the angles and the cohesion of Mohr and Coulomb,
+ *     f = sqrt(J2) + eta p - xi c <= 0,     p = (xx + yy + zz)/3, tension positive,
+ * that flows along the gradient of sqrt(J2) + eta' p, eta' from the dilation as eta from the friction. With t = tan phi and s = sin phi
+ *     outside       eta = 6 s/(sqrt(3) (3 - s))        through the corners of triaxial compression
+ *     inside        eta = 6 s/(sqrt(3) (3 + s))        through the corners of triaxial extension
+ *     plane-strain  eta = 3 t/sqrt(9 + 12 t^2)         the same limit load in plane strain, where the flow is associated
+ * and xi = eta/t (de Souza Neto, Peric and Owen 2008, section 6.4.4 and box 8.8; Drucker and Prager 1952). The return is in closed form: to the cone along its flow, or to the
+ * apex where the cone would be passed. */
+#include "soil.h"
+
+enum { E_, NU, COHESION, FRICTION, DILATION, MATCH, RESIDUAL_COHESION, RESIDUAL_FRICTION, RESIDUAL_DILATION, SOFTENING };
+enum match { OUTSIDE, INSIDE, PLANE_STRAIN };
+
+typedef struct law {
+    const ab_host *host;
+    soil_elastic elastic;
+    soil_softening softening;
+    double cohesion, friction, dilation, cohesion_change, friction_change, dilation_change; /* Pa, tangents of the angles */
+    double square, linear; /* eta = 3 t/(sqrt(9 + square t^2) + linear t), the three matches in one form */
+} law;
+
+/* eta of tan(angle); outside and inside: 6 s/(sqrt(3) (3 -+ s)) = 3 t/(sqrt(3)/2 (3 sqrt(1 + t^2) -+ t)). */
+SOIL_INLINE double steepness(const law *l, double t) {
+    return 3.0 * t / (sqrt(l->square * t * t + (l->linear == 0.0 ? 9.0 : 6.75)) + l->linear * t);
+}
+SOIL_INLINE double strength(const law *l, double c, double t) {
+    return 3.0 * c / (sqrt(l->square * t * t + (l->linear == 0.0 ? 9.0 : 6.75)) + l->linear * t);
+} /* xi c */
+
+static __attribute__((noinline)) void check(const void *self, uint32_t components, const double strain[6][SOIL_LANES],
+                                            const double stress[6][SOIL_LANES], soil_lanes *lanes) {
+    const law l = *(const law *)self;
+    soil_trial(l.elastic, components, strain, stress, lanes);
+    const double(*s)[SOIL_LANES] = (const double(*)[SOIL_LANES])lanes->trial;
+    for (size_t i = 0; i < SOIL_LANES; i++) {
+        const double t = soil_share(l.softening, lanes->plastic[i]);
+        const double c = l.cohesion + t * l.cohesion_change, tangent = l.friction + t * l.friction_change;
+        const double mean = (s[0][i] + s[1][i] + s[2][i]) * (1.0 / 3.0), x = s[0][i] - mean, y = s[1][i] - mean, z = s[2][i] - mean;
+        const double root = sqrt(0.5 * (x * x + y * y + z * z) + (s[3][i] * s[3][i] + s[4][i] * s[4][i] + s[5][i] * s[5][i]));
+        const double limit = strength(&l, c, tangent);
+        lanes->excess[i] = root + steepness(&l, tangent) * mean - limit - SOIL_ROUNDING * (fabs(mean) + limit);
+    }
+}
+
+static __attribute__((noinline)) void back(const void *self, const double trial[6], double plastic, double stress[6]) {
+    const law *l = self;
+    const double t = soil_share(l->softening, plastic), c = l->cohesion + t * l->cohesion_change,
+                 tangent = l->friction + t * l->friction_change;
+    const double eta = steepness(l, tangent), flow = steepness(l, l->dilation + t * l->dilation_change), limit = strength(l, c, tangent);
+    const double mean = (trial[0] + trial[1] + trial[2]) / 3;
+    double deviator[6], square = 0.0;
+    for (int k = 0; k < 6; k++) deviator[k] = k < 3 ? trial[k] - mean : trial[k], square += (k < 3 ? 0.5 : 1.0) * deviator[k] * deviator[k];
+    const double root = sqrt(square), outside = root + eta * mean - limit;
+    if (outside <= SOIL_ROUNDING * (fabs(mean) + limit)) { /* a softer surface may be out of reach */
+        memcpy(stress, trial, 6 * sizeof *stress);
+        return;
+    }
+    const double multiplier = outside / (l->elastic.mu + l->elastic.bulk * eta * flow);
+    double pressed = mean - l->elastic.bulk * flow * multiplier,
+           left = limit - eta * pressed; /* sqrt(J2) of the cone at that mean stress */
+    if (!(root - l->elastic.mu * multiplier > 0.0) || !(left > 0.0)) pressed = eta > 0.0 ? limit / eta : pressed, left = 0.0;
+    for (int k = 0; k < 6; k++) stress[k] = (k < 3 ? pressed : 0.0) + (left > 0.0 ? deviator[k] * (left / root) : 0.0);
+}
+
+/* Softening faster than elasticity can unload (compare mc_least_softening): f falls by G + K eta eta' per multiplier; the plastic strain of a multiplier is 1/sqrt(3). */
+static double least_softening(const law *l) {
+    const double lost =
+        strength(l, l->cohesion, l->friction) - strength(l, l->cohesion + l->cohesion_change, l->friction + l->friction_change);
+    return lost / (sqrt(3.0) * (l->elastic.mu + l->elastic.bulk * steepness(l, l->friction) * steepness(l, l->dilation)));
+}
+
+static int create(const ab_host *host, const ab_value *s, void **self) {
+    const double cohesion = s[COHESION].real, friction = s[FRICTION].real, dilation = s[DILATION].real, degrees = 180 / acos(-1.0);
+    const double residual = s[s[RESIDUAL_COHESION].given ? RESIDUAL_COHESION : COHESION].real;
+    const double last_friction = s[s[RESIDUAL_FRICTION].given ? RESIDUAL_FRICTION : FRICTION].real;
+    const double last_dilation = s[s[RESIDUAL_DILATION].given ? RESIDUAL_DILATION : DILATION].real;
+    const int64_t match = s[MATCH].integer;
+    const double third = sqrt(3.0) / 2;
+    law made = {.host = host,
+                .elastic = soil_elastic_of(s[E_].real, s[NU].real),
+                .cohesion = cohesion,
+                .friction = tan(friction),
+                .dilation = tan(dilation),
+                .cohesion_change = residual - cohesion,
+                .friction_change = tan(last_friction) - tan(friction),
+                .dilation_change = tan(last_dilation) - tan(dilation),
+                .square = match == PLANE_STRAIN ? 12.0 : 6.75,
+                .linear = match == PLANE_STRAIN ? 0.0
+                          : match == OUTSIDE    ? -third
+                                                : third};
+    char text[300] = "";
+    if (residual > cohesion)
+        snprintf(text, sizeof text, "residual_cohesion %g Pa is above the cohesion %g Pa: softening only goes down", residual, cohesion);
+    else if (last_friction > friction)
+        snprintf(text, sizeof text, "residual_friction %g deg is above the friction %g deg: softening only goes down",
+                 last_friction * degrees, friction * degrees);
+    else if (dilation > friction)
+        snprintf(text, sizeof text,
+                 "dilation %g deg is above the friction %g deg: such a soil would make energy; give a dilation of at most the friction",
+                 dilation * degrees, friction * degrees);
+    else if (last_dilation > dilation)
+        snprintf(text, sizeof text, "residual_dilation %g deg is above the dilation %g deg: softening only goes down",
+                 last_dilation * degrees, dilation * degrees);
+    else if (last_dilation > last_friction)
+        snprintf(text, sizeof text,
+                 "at the residual the dilation of %g deg would be above the friction of %g deg, and make energy; give a residual_dilation "
+                 "of at most that",
+                 last_dilation * degrees, last_friction * degrees);
+    else if (cohesion == 0 && friction == 0)
+        snprintf(text, sizeof text, "neither cohesion nor friction: such a soil bears no shear at all; give one of them");
+    if (text[0]) return soil_say(host, text), -1;
+    const bool softens = made.cohesion_change < 0 || made.friction_change < 0 || made.dilation_change < 0;
+    if (soil_softening_read(host, s + SOFTENING, softens, &made.softening) != 0) return -1;
+    const double least = softens ? least_softening(&made) : 0;
+    if (softens && made.softening.end <= least) {
+        snprintf(text, sizeof text,
+                 "the strength falls to its residual within a plastic strain of %g, faster than elasticity can unload: it must be above %g "
+                 "(a longer softening_strain "
+                 "or softening_slip, a smaller length, or a stiffer soil)",
+                 made.softening.end, least);
+        return soil_say(host, text), -1;
+    }
+    law *l = host->allocate(host->context, sizeof *l);
+    if (!l) return -1;
+    *l = made;
+    *self = l;
+    return 0;
+}
+
+static void destroy(void *self) {
+    const law *made = self;
+    made->host->release(made->host->context, self);
+}
+
+static int update(void *self, ab_batch *b) {
+    const law *l = self;
+    return soil_update(l->host, l, &l->elastic, l->softening, b, check, back);
+}
+
+static const ab_param params[] = {
+    SOIL_ELASTIC_SETTINGS,
+    {"cohesion", "Pa", "cohesion of Mohr and Coulomb", NULL, AB_REAL, AB_REQUIRED, 0, 0, INFINITY},
+    {"friction", "rad", "angle of friction of Mohr and Coulomb, as in \"30 deg\"", NULL, AB_REAL, AB_REQUIRED | AB_MAX_OPEN, 0, 0,
+     SOIL_RIGHT_ANGLE},
+    {"dilation", "rad", "angle of dilation, at most the friction; 0: flow keeps the volume", NULL, AB_REAL, AB_MAX_OPEN, 0, 0,
+     SOIL_RIGHT_ANGLE},
+    {"match", "1",
+     "where the cone meets Mohr and Coulomb: at triaxial compression (outside), triaxial extension (inside), or by its limit loads in "
+     "plane strain",
+     "outside|inside|plane-strain", AB_CHOICE, 0, PLANE_STRAIN, 0, 0},
+    {"residual_cohesion", "Pa", "cohesion after softening; without it the cohesion stays", NULL, AB_REAL, 0, INFINITY, 0, INFINITY},
+    {"residual_friction", "rad", "friction after softening; without it the friction stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
+     SOIL_RIGHT_ANGLE},
+    {"residual_dilation", "rad", "dilation after softening; without it the dilation stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
+     SOIL_RIGHT_ANGLE},
+    SOIL_SOFTENING_SETTINGS,
+};
+static const ab_state states[] = {SOIL_STATE};
+static const ab_material_ops ops = {sizeof ops, NULL, update};
+static const ab_class drucker_prager = {
+    .struct_size = sizeof(ab_class),
+    .kind = AB_MATERIAL,
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
+    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED,
+    .nparam = sizeof params / sizeof *params,
+    .nstate = 1,
+    .name = "drucker-prager",
+    .help = "friction and cohesion on a round cone matched to Mohr-Coulomb, softening to residuals",
+    .reference = "de Souza Neto, Peric and Owen 2008, box 8.8",
+    .param = params,
+    .state = states,
+    .create = create,
+    .destroy = destroy,
+    .ops = &ops,
+};
+static const ab_class *const classes[] = {&drucker_prager};
+AB_EXPORT const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "drucker-prager", "1.0", "MIT", classes};
