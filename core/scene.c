@@ -20,6 +20,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     char *space = NULL;
     ab_read_text(&r->base, &key[TOP_TITLE], v[TOP_TITLE], "", &scene->title);
     ab_read_word(&r->base, &key[TOP_SPACE], v[TOP_SPACE], "", &space);
+    if (space != NULL && strcmp(space, "axisymmetric") == 0) scene->space = AB_SPACE_AXISYMMETRIC;
     ab_read_vector(&r->base, &key[TOP_GRAVITY], v[TOP_GRAVITY], "", scene->gravity);
     ab_scene_take_damping(r, v[TOP_DAMPING]);
     ab_scene_take_watchdog(r, v[TOP_WATCHDOG]);
@@ -29,6 +30,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_bodies(r, v[TOP_BODIES]);
     ab_scene_take_contacts(r, v[TOP_CONTACT]);
     ab_scene_check_grid(r, root);
+    ab_scene_check_axisymmetric(r);
     ab_scene_take_loads(r, v[TOP_LOADS]);
     ab_scene_take_monitors(r, v[TOP_MONITORS]);
     ab_scene_take_history(r, v[TOP_HISTORY]);

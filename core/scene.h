@@ -6,7 +6,11 @@
 #include "core/expression.h"
 #include "core/plugin_host.h"
 
-typedef enum ab_space { AB_SPACE_PLANE_STRAIN = 0, AB_SPACE_AXISYMMETRIC_, AB_SPACE_3D_ } ab_space;
+typedef enum ab_space { AB_SPACE_PLANE_STRAIN = 0, AB_SPACE_AXISYMMETRIC, AB_SPACE_3D_ } ab_space;
+
+/* Length of the circle at a radius (axisymmetric scenes), m. */
+static inline double ab_circumference(double radius) { return 6.283185307179586 * radius; }
+
 typedef enum ab_side_kind { AB_SIDE_FREE = 0, AB_SIDE_ROLLER, AB_SIDE_FIXED, AB_SIDE_OUTFLOW } ab_side_kind;
 enum { AB_LEFT = 0, AB_RIGHT, AB_BOTTOM, AB_TOP, AB_SIDES }; /* x min, x max, y min, y max */
 

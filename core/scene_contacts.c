@@ -29,8 +29,9 @@ static const ab_loaded_class *contact_class(ab_scene_reader *r, const ab_node *n
                 : "finds contact points but gives no impulses; name it as algorithm, and as response one that does, such as coulomb");
         return NULL;
     }
-    if (!(found->class_.spaces & AB_PLANE_STRAIN))
-        ab_report_error(r->base.report, node->mark, "%s: '%s' does not work in plane strain", path, name);
+    const char *space;
+    if (!(found->class_.spaces & ab_scene_space(r->scene, &space)))
+        ab_report_error(r->base.report, node->mark, "%s: '%s' does not work in %s", path, name, space);
     return found;
 }
 

@@ -68,6 +68,7 @@ void ab_scene_take_grid(ab_scene_reader *r, const ab_node *node) {
     const bool to = ab_read_point(&r->base, &key[GRID_TO], v[GRID_TO], "grid", scene->grid_to);
     const bool cell = ab_read_number(&r->base, &key[GRID_CELL], v[GRID_CELL], "grid", &scene->grid_cell);
     if (v[GRID_SIDES] != NULL) take_sides(r, v[GRID_SIDES]);
+    if (from && cell) ab_scene_take_axis(r, v[GRID_FROM]->mark);
     if (from && to && cell)
         for (int d = 0; d < 2; d++) count_cells(r, d, v[GRID_TO]->mark);
 }

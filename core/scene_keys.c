@@ -16,7 +16,8 @@
 static const ab_key top[] = {
     [TOP_ABUT] = {"abut", AB_KEY_INTEGER, .flags = AB_KEY_REQUIRED, .unit = "1", .help = "version of the scene format, 1"},
     [TOP_TITLE] = {"title", AB_KEY_TEXT, .initial = "", .help = "one line that says what this is"},
-    [TOP_SPACE] = {"space", AB_KEY_WORD, .initial = "plane-strain", .words = "plane-strain|!axisymmetric|!3d", .help = "kind of space"},
+    [TOP_SPACE] = {"space", AB_KEY_WORD, .initial = "plane-strain", .words = "plane-strain|axisymmetric|!3d",
+                   .help = "kind of space; axisymmetric: x is the radius, y runs along the axis, masses, forces and energies are of whole rings"},
     [TOP_CONSTANTS] = {"constants", AB_KEY_SECTION, .help = "names for numbers, used in every expression"},
     [TOP_GRAVITY] = {"gravity", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLE_T,
                      .help = "acceleration of gravity"},

@@ -21,8 +21,9 @@ static void take_material(ab_scene_reader *r, const ab_entry *entry, ab_material
     material->loaded = ab_registry_find(r->registry, AB_MATERIAL, model, v[MATERIAL_MODEL]->mark, r->base.report);
     if (material->loaded == NULL) return; /* its settings are not known, so nothing can be said about the other keys */
     const ab_class *class_ = &material->loaded->class_;
-    if (!(class_->spaces & AB_PLANE_STRAIN))
-        ab_report_error(r->base.report, v[MATERIAL_MODEL]->mark, "%s: model '%s' does not work in plane strain", path, model);
+    const char *space;
+    if (!(class_->spaces & ab_scene_space(r->scene, &space)))
+        ab_report_error(r->base.report, v[MATERIAL_MODEL]->mark, "%s: model '%s' does not work in %s", path, model, space);
     const char *names[MOST];
     const size_t count = ab_settings_names(class_, names, 0, MOST);
     ab_section_unknown(&r->base, &ab_section_material, names, count, v[MATERIAL_MODEL]->override_, entry->value, where);

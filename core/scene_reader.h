@@ -49,6 +49,12 @@ bool ab_body_bounds(const ab_body_spec *body, double low[2], double high[2]);
 
 /* After bodies and contacts: is there a grid where one is needed, and are the bodies that need it inside? `root`: of the scene. */
 void ab_scene_check_grid(ab_scene_reader *reader, const ab_node *root);
+/* In axisymmetric scenes. The grid's left side: a roller where it is the axis. After bodies and contacts: what cannot be, or is not there yet. */
+void ab_scene_take_axis(ab_scene_reader *reader, ab_mark mark);
+void ab_scene_check_axisymmetric(ab_scene_reader *reader);
+/* AB_PLANE_STRAIN or AB_AXISYMMETRIC: what a plugin must be able to do for this scene; and its name. */
+uint32_t ab_scene_space(const ab_scene *scene, const char **name);
+
 /* True when a pair's finder looks at the nodes of the grid. */
 bool ab_contact_needs_grid(const ab_contact_spec *contact);
 

@@ -1,4 +1,4 @@
-/* strain.h: the strain of plane strain from the displacement gradient of a step, for eight points at once; the same for every method.
+/* strain.h: the strain in the plane, and of hoops across it, from the displacement gradient of a step, for eight points at once; the same for every method.
  *
  * H_ij = d(du_i)/dx_j with respect to the start of the step, in the order xx, xy, yx, yy. The increment is that of Hughes and Winget (1980):
  * G = H (I + H/2)^-1, so that a finite rotation gives no strain; in two dimensions the rotation is one angle. */
@@ -45,6 +45,14 @@ static inline __attribute__((always_inline)) void ab_turn_stress(v8 cosine, v8 s
     *xx = cc * sxx + ss * syy - (cs + cs) * sxy;
     *yy = ss * sxx + cc * syy + (cs + cs) * sxy;
     *xy = cs * (sxx - syy) + (cc - ss) * sxy;
+}
+
+/* Across the plane: the strain of a hoop that grows by the part h of its length in the step, as Hughes and Winget have it; and F_zz <- (1 + h) F_zz, a row of eight. */
+static inline __attribute__((always_inline)) v8 ab_hoop_strain(v8 h) { return h / (v8_set(1.0) + v8_set(0.5) * h); }
+static inline __attribute__((always_inline)) v8 ab_move_hoop(v8 h, double *f) {
+    const v8 moved = v8_load(f) + h * v8_load(f);
+    v8_store(f, moved);
+    return moved;
 }
 
 /* F <- (I + H) F; rows xx, xy, yx, yy of eight. */

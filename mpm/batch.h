@@ -1,5 +1,6 @@
-/* batch.h: strain of plane strain and the material's batch, the same for every basis: what stands between the gradients of eight blocks of points and
- * their new stress. Included by the kernels, so that it is compiled into their loops. */
+/* batch.h: strain and the material's batch, the same for every basis: what stands between the gradients of eight blocks of points and
+ * their new stress. Included by the kernels, so that it is compiled into their loops; `axisymmetric` is a constant there: with it h has a fifth row, the hoop
+ * part u_r/r of the step, and component zz is the hoop's. */
 #ifndef AB_MPM_BATCH_H
 #define AB_MPM_BATCH_H
 
@@ -49,11 +50,16 @@ static inline void mpm_batch_open(mpm_long_batch *batch, const mpm_body *body, c
 
 /* Block b of the batch: strain increment and turned stress. Deformation gradients of the points move on to the end of the step. */
 static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batch *batch, mpm_rows rows, double *block,
-                                                                   const double h[4][LONG], uint32_t b) {
+                                                                   const double (*h)[LONG], uint32_t b, const bool axisymmetric) {
     const size_t at = 8 * (size_t)b;
     const v8 one = v8_set(1.0);
     const v8 hxx = v8_load(h[0] + at), hxy = v8_load(h[1] + at), hyx = v8_load(h[2] + at), hyy = v8_load(h[3] + at);
-    const ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
+    ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
+    const v8 hoop = axisymmetric ? v8_load(h[4] + at) : v8_set(0.0);
+    if (axisymmetric) {
+        v8_store(batch->strain[2] + at, ab_hoop_strain(hoop));
+        increment.jacobian *= one + hoop;
+    }
     v8_store(batch->strain[0] + at, increment.xx);
     v8_store(batch->strain[1] + at, increment.yy);
     v8_store(batch->strain[3] + at, increment.xy);
@@ -72,7 +78,7 @@ static inline __attribute__((always_inline)) void mpm_batch_strain(mpm_long_batc
         v8 moved[4];
         ab_move_gradient(hxx, hxy, hyx, hyy, block + 8 * rows.gradient, moved);
         for (int c = 0; c < 4; ++c) v8_store(batch->gradient[c] + at, moved[c]);
-        v8_store(batch->gradient[4] + at, one);
+        v8_store(batch->gradient[4] + at, axisymmetric ? ab_move_hoop(hoop, block + 8 * (rows.gradient + 4)) : one);
     }
     if (batch->view.velocity_gradient) {
         const v8 rate = v8_set(1.0 / batch->view.dt);
@@ -97,13 +103,14 @@ static inline int mpm_batch_call(mpm_long_batch *batch, const mpm_body *body, si
 
 /* Block b: new stress, states and volume; work of the step. */
 static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_long_batch *batch, mpm_rows rows, double *block, uint32_t b,
-                                                                   v8 *strain_work, v8 *plastic_work, v8 *fastest) {
+                                                                   v8 *strain_work, v8 *plastic_work, v8 *fastest,
+                                                                   const bool axisymmetric) {
     const size_t at = 8 * (size_t)b;
     const v8 volume0 = v8_load(block + 8 * ROW_VOLUME), volume = volume0 * v8_load(batch->jacobian + at);
     v8 work = v8_set(0.0);
     for (int c = 0; c < 4; ++c) {
         const v8 stress = v8_load(batch->stress[c] + at);
-        if (c != 2) work += (v8_load(batch->turned[c] + at) + stress) * v8_load(batch->strain[c] + at);
+        if (c != 2 || axisymmetric) work += (v8_load(batch->turned[c] + at) + stress) * v8_load(batch->strain[c] + at);
         v8_store(block + 8 * (ROW_STRESS + c), stress);
     }
     *strain_work += v8_set(0.25) * (volume0 + volume) * work;
@@ -114,7 +121,7 @@ static inline __attribute__((always_inline)) void mpm_batch_settle(const mpm_lon
 }
 
 /* A' = (I + H) A (I + H)^T for the domain tensor (xx, yy, xy) of block b. */
-static inline __attribute__((always_inline)) void mpm_stretch_extent(double *e, const double h[4][LONG], uint32_t b) {
+static inline __attribute__((always_inline)) void mpm_stretch_extent(double *e, const double (*h)[LONG], uint32_t b) {
     const size_t at = 8 * (size_t)b;
     const v8 fxx = v8_set(1.0) + v8_load(h[0] + at), fxy = v8_load(h[1] + at), fyx = v8_load(h[2] + at),
              fyy = v8_set(1.0) + v8_load(h[3] + at);

@@ -20,8 +20,7 @@ static double stable_courant(const mpm_body *body) {
     const ab_body_spec *spec = body->domain.spec;
     if (spec->fill != AB_FILL_CVT && spec->shape.kind != AB_SHAPE_MESH)
         return body->kernel->courant[(int)fmin(ceil(sqrt(spec->per_cell)), 8.0) - 1];
-    const double area = body->motion.mass / body->material->density;
-    const int middle = (int)fmin(fmax(ceil(body->h * sqrt((double)body->born / area)), 2.0), 7.0); /* points per direction */
+    const int middle = (int)fmin(fmax(ceil(body->h * sqrt((double)body->born / body->area)), 2.0), 7.0); /* points per direction */
     return fmin(body->kernel->courant[middle - 1], fmin(body->kernel->courant[middle - 2], body->kernel->courant[middle]));
 }
 
@@ -338,7 +337,14 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     const ab_body_spec *spec = scene->bodies + index;
     mpm_body *body = calloc(1, sizeof *body);
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
-    body->kernel = mpm_kernel_of(spec->basis);
+    body->kernel = mpm_kernel_of(spec->basis, scene->space);
+    if (!body->kernel) {
+        free(body);
+        return ab_report_error(report, spec->mark,
+                               "bodies.%s.basis: %s is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",
+                               spec->name, spec->basis);
+    }
+    body->axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
     body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
     body->domain = (ab_domain){.ops = body->update == MPM_USF   ? &OPS_USF
                                       : body->update == MPM_USL ? &OPS_USL

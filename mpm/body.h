@@ -27,8 +27,9 @@ enum { ROW_X = 0, ROW_V = 2, ROW_NEXT = 4, ROW_MASS = 6, ROW_VOLUME = 7, ROW_STR
 enum { MPM_PATCH_NARROW = AB_TILE + 4, MPM_PATCH_WIDE = AB_TILE + 5, MPM_PATCH_MOST = MPM_PATCH_WIDE * MPM_PATCH_WIDE };
 enum { MPM_STENCIL = 16 }; /* nodes of a point, at most */
 
-/* A node in a patch: mass, momentum, and the internal force in two halves (terms with dN/dx, terms with dN/dy) that assembly adds. */
-enum { NODE_MASS = 0, NODE_MOMENTUM = 1, NODE_FORCE_X = 4, NODE_FORCE_Y = 6 };
+/* A node in a patch: mass, momentum, the radial force of hoops (axisymmetric scenes), and the internal force in two halves (terms with dN/dx, terms with dN/dy)
+ * that assembly adds. */
+enum { NODE_MASS = 0, NODE_MOMENTUM = 1, NODE_HOOP = 3, NODE_FORCE_X = 4, NODE_FORCE_Y = 6 };
 
 /* A node a tile owns, 64 bytes: current velocity, velocity at the start of the step, mass, inverse masses (0 where held). */
 enum { OWN_VELOCITY = 0, OWN_OLD = 2, OWN_MASS = 4, OWN_INVERSE = 5, OWN_RECORD = 8 };
@@ -44,7 +45,7 @@ typedef struct mpm_rows { /* where the optional rows begin; -1: not allocated */
     int half;             /* 2: half sizes of the point's domain, m (gimp) */
     int inverse_half;     /* 2: their inverses */
     int corners;          /* 4: half sides of the point's domain, (x, y) of one and of the other, m (cpdi) */
-    int gradient;         /* 4: deformation gradient xx, xy, yx, yy */
+    int gradient;         /* 4: deformation gradient xx, xy, yx, yy; 5 with zz in axisymmetric scenes */
     int mean_stress;      /* 1: (xx + yy)/2 as the material gave it, while that of the stress is averaged (f_bar) */
     int affine;           /* 4: of the velocity about the point, xx, xy, yx, yy (apic, tpic): see transfer.inc */
     int state, states;    /* the material's */
@@ -127,7 +128,7 @@ typedef struct mpm_kernel {
     /* Strain, stress, volumes and domains; with `advance` points then stand at ROW_NEXT. -1, or the block near which the material gave up. */
     int (*stress)(mpm_body *, size_t tile, const ab_step *, bool advance, mpm_sums *);
 } mpm_kernel;
-const mpm_kernel *mpm_kernel_of(const char *basis); /* kernels.c */
+const mpm_kernel *mpm_kernel_of(const char *basis, ab_space); /* kernels.c; NULL: the basis is not there in that space */
 
 /* True for a side that holds its nodes. At all others the grid goes on beyond. */
 static inline bool mpm_side_holds(ab_side_kind side) { return side == AB_SIDE_ROLLER || side == AB_SIDE_FIXED; }
@@ -145,6 +146,7 @@ struct mpm_body {
     int order;                 /* xpic, fmpm: m */
     bool full;                 /* fmpm: the filter takes the velocity after the forces, not the one before */
     bool contiguous, gravity;
+    bool axisymmetric; /* x is the radius, points are rings: volumes in m3, masses and forces of the whole ring */
     ab_f_bar f_bar;
     int threads;
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
@@ -158,6 +160,7 @@ struct mpm_body {
     size_t spare_capacity;
     size_t points; /* alive */
     size_t born;   /* ids given out: 0 .. born-1 */
+    double area;   /* m2, of the body at the start, in the plane */
     double *birth; /* (x, y) by id at the start, from the grid's corner; only when displacements are asked for */
 
     mpm_tile *tiles;

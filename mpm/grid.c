@@ -56,6 +56,7 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
 void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
     const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
     const double dt = forces ? step->dt : 0.0;
+    const bool hoops = body->axisymmetric;
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
@@ -74,7 +75,8 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
             if (tile->held) side_mask(body, tile, n, free_);
             for (int c = 0; c < 2; ++c) {
                 const double old = s[NODE_MOMENTUM + c] * inverse * free_[c];
-                const double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
+                double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
+                if (hoops && c == 0) force += s[NODE_HOOP];
                 own[OWN_OLD + c] = old;
                 own[OWN_VELOCITY + c] = (old + force * inverse * dt) * free_[c];
                 own[OWN_INVERSE + c] = inverse * free_[c];

@@ -298,7 +298,7 @@ static void dilate(mpm_body *body, size_t number, const ab_step *step) {
         const double *block = mpm_block(body, tile->first + begin);
         gradients(&f, velocity, step->dt, block, blocks, h);
         for (uint32_t b = 0; b < blocks; ++b, block += f.stride)
-            mpm_cells_add(body, tile, block, mpm_dilatation((const double(*)[LONG])h, b), patch);
+            mpm_cells_add(body, tile, block, mpm_dilatation((const double(*)[LONG])h, b, false), patch);
     }
 }
 
@@ -318,11 +318,11 @@ static int stress(mpm_body *body, size_t number, const ab_step *step, bool advan
         const uint32_t left = tile->blocks - begin, blocks = left < LONG / 8 ? left : LONG / 8;
         double *block = mpm_block(body, tile->first + begin);
         gradients(&f, velocity, step->dt, block, blocks, h);
-        if (body->f_bar) mpm_average_dilatation(body, tile, means, block, blocks, h);
-        for (uint32_t b = 0; b < blocks; ++b) mpm_batch_strain(&batch, rows, block + b * f.stride, h, b);
+        if (body->f_bar) mpm_average_dilatation(body, tile, means, block, blocks, h, false);
+        for (uint32_t b = 0; b < blocks; ++b) mpm_batch_strain(&batch, rows, block + b * f.stride, (const double(*)[LONG])h, b, false);
         if (mpm_batch_call(&batch, body, 8 * blocks) != 0) return (int)(tile->first + begin);
         for (uint32_t b = 0; b < blocks; ++b, block += f.stride) {
-            mpm_batch_settle(&batch, rows, block, b, &strain_work, &plastic_work, &fastest);
+            mpm_batch_settle(&batch, rows, block, b, &strain_work, &plastic_work, &fastest, false);
             convect(block + 8 * rows.corners, (const double(*)[LONG])h, b);
             if (rows.extent >= 0) mpm_stretch_extent(block + 8 * rows.extent, (const double(*)[LONG])h, b);
             if (advance)

@@ -44,11 +44,18 @@ static void carry(const mpm_body *body, const mpm_tile *tile, const double *bloc
         for (int i = 0; i < 3; ++i) value[j * 3 + i] = n[0][i] * n[1][j];
 }
 
+#ifndef AXISYMMETRIC
+#define AXISYMMETRIC 0
+#endif
 #define NODES 3
 #define GIMP 1
 #define SPLINE 0
 #define BASIS "gimp"
 #define COURANT 0.803, 0.803, 0.664, 0.664, 0.608, 0.562, 0.525, 0.493 /* 1 and 3 bear a little more */
 #define CARRY carry
+#if AXISYMMETRIC
+#define NAME(f) f##_gimp_axisymmetric
+#else
 #define NAME(f) f##_gimp
+#endif
 #include "mpm/kernel.inc"

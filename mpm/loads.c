@@ -127,13 +127,15 @@ static void find_force(const mpm_body *body, double time, mpm_load *load) {
             load->stretch[c] = 0.5 * (to[c] - from[c]);
         }
         const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
-        load->force[0] = -2.0 * p * load->stretch[1];
-        load->force[1] = 2.0 * p * load->stretch[0];
+        const double round = body->axisymmetric ? ab_circumference(load->now[0] + body->origin[0]) : 1.0; /* exact for a cone, too */
+        load->force[0] = -2.0 * p * load->stretch[1] * round;
+        load->force[1] = 2.0 * p * load->stretch[0] * round;
     } else {
         own_place(body, load, load->now);
         for (int c = 0; c < 2; ++c) {
             load->stretch[c] = load->half[c];
             load->force[c] = load->length * ab_number_at(spec->traction + c, time, x, y, 0.0);
+            if (body->axisymmetric) load->force[c] *= ab_circumference(load->place[0]);
         }
     }
 }

@@ -27,7 +27,7 @@ void mpm_rows_plan(mpm_body *body) {
     if (gap || (domains && body->contiguous)) rows.extent = rows.count, rows.count += 3;
     if (body->kernel->convected) rows.corners = rows.count, rows.count += 4;
     if (domains) rows.half = rows.count, rows.inverse_half = rows.count + 2, rows.count += 4;
-    if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
+    if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += body->axisymmetric ? 5 : 4;
     if (body->f_bar) rows.mean_stress = rows.count, rows.count += 1;
     if (body->finish == MPM_FINISH_AFFINE) rows.affine = rows.count, rows.count += 4;
     rows.states = ab_state_count(class_);
@@ -83,7 +83,7 @@ static void place_point(const mpm_body *body, const ab_fill *fill, size_t i, dou
     const mpm_rows rows = body->rows;
     const double x[2] = {fill->x[i] - body->origin[0], fill->y[i] - body->origin[1]}, *a = fill->extent + 3 * i;
     for (int c = 0; c < 2; ++c) b[8 * (ROW_X + c) + l] = b[8 * (ROW_NEXT + c) + l] = x[c];
-    b[8 * ROW_VOLUME + l] = fill->volume[i];
+    b[8 * ROW_VOLUME + l] = fill->volume[i] * (body->axisymmetric ? ab_circumference(fill->x[i]) : 1.0);
     if (rows.extent >= 0)
         for (int c = 0; c < 3; ++c) b[8 * (rows.extent + c) + l] = a[c];
     if (rows.half >= 0)
@@ -95,6 +95,7 @@ static void place_point(const mpm_body *body, const ab_fill *fill, size_t i, dou
     if (rows.corners >= 0)
         for (int c = 0; c < 2; ++c) b[8 * (rows.corners + 3 * c) + l] = sqrt(a[c]);
     if (rows.gradient >= 0) b[8 * rows.gradient + l] = b[8 * (rows.gradient + 3) + l] = 1.0;
+    if (rows.gradient >= 0 && body->axisymmetric) b[8 * (rows.gradient + 4) + l] = 1.0;
 }
 
 /* Where the points of the fill stand: tile, cell, number. False: no memory. */
@@ -153,8 +154,9 @@ ab_status mpm_points_insert(mpm_body *body, const ab_fill *fill, ab_report *repo
             const size_t slot = block * 8 + (k - p), i = places[k].index;
             double *b = mpm_block(body, slot / 8);
             const size_t l = slot % 8;
-            const double volume = fill->volume[i];
             place_point(body, fill, i, b, l);
+            const double volume = b[8 * ROW_VOLUME + l];
+            body->area += fill->volume[i];
             for (int c = 0; c < 2; ++c) {
                 const ab_body_spec *spec = body->domain.spec;
                 const double at[2] = {fill->x[i], fill->y[i]}, v = ab_number_at(spec->velocity + c, 0.0, at[0], at[1], 0.0);

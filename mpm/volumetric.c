@@ -2,7 +2,7 @@
  * nodes. Instead the change of volume in a step is averaged,
  *   dbar = A d,  A: by volumes over the points of each cell ("cell"), or from there to the nodes around and back to the cells ("patch"),
  * and each point is strained with dbar for its own d (volumes, domains and deformation gradients follow that strain). The nodes must feel the same average: the
- * mean stress in their forces is A q for q = (xx + yy)/2 of the points. A is symmetric with the volumes as weights, so the forces' power is that of the strain,
+ * mean stress in their forces is A q for q = (xx + yy)/2 of the points (with hoops (xx + yy + zz)/3). A is symmetric with the volumes as weights, so the forces' power is that of the strain,
  *   sum V (A q) d = sum V q (A d),
  * in every step, whatever cells the points have come from; with dbar alone, points that carry their pressure into another cell drive d - dbar there without
  * cost, and a body that moves through the grid blows up. All eigenvalues of A lie between 0 and 1: the stiffness is nowhere larger than without, nor the critical
@@ -73,13 +73,14 @@ void mpm_volumetric_strain(mpm_body *body, const ab_step *step) {
 
 void mpm_volumetric_stress(mpm_body *body) {
     const size_t stride = 8 * (size_t)body->rows.count, own = 8 * (size_t)body->rows.mean_stress;
+    const bool hoops = body->axisymmetric;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k) {
         const mpm_tile *tile = body->tiles + k;
         if (tile->patch < 0) continue;
         double *patch = mpm_cells_open(body, tile), *block = mpm_block(body, tile->first);
         for (uint32_t b = 0; b < tile->blocks; ++b, block += stride) {
-            const v8 mean = mpm_mean_stress(block);
+            const v8 mean = hoops ? mpm_mean_stress(block, true) : mpm_mean_stress(block, false);
             v8_store(block + own, mean);
             mpm_cells_add(body, tile, block, mean, patch);
         }
@@ -91,6 +92,12 @@ void mpm_volumetric_stress(mpm_body *body) {
         if (tile->patch < 0) continue;
         double means[2 * MPM_PATCH_MOST + 8] __attribute__((aligned(64))), *block = mpm_block(body, tile->first);
         mpm_volumetric_fetch(body, k, means);
-        for (uint32_t b = 0; b < tile->blocks; ++b, block += stride) mpm_set_mean_stress(block, mpm_cells_mean(body, tile, block, means));
+        for (uint32_t b = 0; b < tile->blocks; ++b, block += stride) {
+            const v8 mean = mpm_cells_mean(body, tile, block, means);
+            if (hoops)
+                mpm_set_mean_stress(block, mean, true);
+            else
+                mpm_set_mean_stress(block, mean, false);
+        }
     }
 }
