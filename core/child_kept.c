@@ -130,8 +130,16 @@ void ab_child_conclude(ab_child *child, int status) {
     child->state = status == AB_BAD_INPUT ? AB_CHILD_REFUSED : AB_CHILD_FAILED;
     read_log(child);
     if (status <= 128) return;
+    child->killed = true;
     char why[80];
     snprintf(why, sizeof why, "killed by signal %d (%s)", status - 128, strsignal(status - 128));
+    ab_child_say_why(child, why);
+}
+
+void ab_child_over_limit(const ab_child_runs *runs, ab_child *child) {
+    char why[80];
+    child->state = AB_CHILD_LIMIT;
+    snprintf(why, sizeof why, "over the limit of %g s", runs->limit);
     ab_child_say_why(child, why);
 }
 
@@ -144,8 +152,13 @@ bool ab_child_take_kept(const ab_child_runs *runs, ab_child *child) {
     bool kept = report != NULL && ab_document_read(path, &document, report) == AB_OK;
     const ab_node *mark = kept ? ab_node_find(document->root, "fingerprint") : NULL;
     kept = mark != NULL && mark->kind == AB_NODE_SCALAR && strcmp(mark->text, runs->fingerprint) == 0;
-    if (kept) {
-        child->wall = number_of(document->root, "wall_seconds");
+    if (kept) child->wall = number_of(document->root, "wall_seconds");
+    const bool late = kept && (int)number_of(document->root, "exit") == AB_CHILD_STOPPED;
+    if (late) { /* stopped at a limit: the same again unless there is more time now */
+        kept = child->wall > runs->limit;
+        if (kept) ab_child_over_limit(runs, child);
+        child->kept = kept;
+    } else if (kept) {
         child->cpu = number_of(document->root, "cpu_seconds");
         child->bytes = number_of(document->root, "peak_bytes");
         child->kept = true;

@@ -93,7 +93,7 @@ static void tell(const ab_child_runs *runs, const ab_child *child) {
 static bool machine_failed(const ab_child *child, int status) {
     static const char *const said[] = {"memory",        "cannot be written", "could not be written",
                                        "No space left", "too large",         "cannot be made"};
-    if (status == 127 || status == 128 + SIGKILL) return true;
+    if (status == 127 || status == 128 + SIGKILL || status == AB_CHILD_STOPPED) return true; /* not begun, or ended from outside */
     for (size_t i = 0; i < sizeof said / sizeof *said; i++)
         if (child->why != NULL && strstr(child->why, said[i]) != NULL) return true;
     return false;
@@ -107,18 +107,16 @@ static ab_status collect(const ab_child_runs *runs, ab_child *child, int how, co
     child->process = 0;
     const int status = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
     if (child->wall > runs->limit && status > 3) {
-        char why[80];
-        child->state = AB_CHILD_LIMIT;
-        snprintf(why, sizeof why, "over the limit of %g s", runs->limit);
-        ab_child_say_why(child, why);
-        return AB_OK;
+        ab_child_over_limit(runs, child);
+        return runs->keep_failures ? ab_child_keep(runs, child, AB_CHILD_STOPPED, report) : AB_OK;
     }
     if (stopped && status > 128) { /* with this program, by its signal: to be run again */
         child->state = AB_CHILD_WAITING;
         return AB_OK;
     }
     ab_child_conclude(child, status);
-    if (child->state == AB_CHILD_FAILED && (!runs->keep_failures || machine_failed(child, status))) return AB_OK;
+    child->machine = child->state == AB_CHILD_FAILED && machine_failed(child, status);
+    if (child->state == AB_CHILD_FAILED && (!runs->keep_failures || child->machine)) return AB_OK;
     return ab_child_keep(runs, child, status, report);
 }
 

@@ -21,6 +21,8 @@ typedef struct ab_child {  /* one run */
     ab_child_state state;
     char *folder, *label, *why; /* label: "constants.cells=40, basis=gimp"; why: it is not done; one line */
     bool kept;                  /* from an earlier call */
+    bool killed;                /* failed: by a signal, not by an error of its own */
+    bool machine;               /* failed: for lack of memory or room */
     double wall, cpu;           /* s, of the process */
     double bytes;               /* largest resident set */
     int process;                /* while it runs */
@@ -56,6 +58,8 @@ ab_status ab_child_runs_run(ab_child_runs *runs, const ab_scene *scene, ab_regis
 void ab_child_fingerprint(ab_child_runs *runs, const ab_scene *scene, ab_registry *registry);
 bool ab_child_take_kept(const ab_child_runs *runs, ab_child *child);
 ab_status ab_child_keep(const ab_child_runs *runs, const ab_child *child, int status, ab_report *report);
+void ab_child_over_limit(const ab_child_runs *runs, ab_child *child);
+enum { AB_CHILD_STOPPED = 143 }; /* exit status of a run that was over the limit: 128 + SIGTERM */
 /* From the exit status of `abut run`: its state, and why it is not done. */
 void ab_child_conclude(ab_child *child, int status);
 

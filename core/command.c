@@ -46,6 +46,14 @@ static const ab_command commands[] = {
      AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_VARY | AB_OPTION_TOLERANCE |
          AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE,
      1, 1, ab_command_trade},
+    {"extremes", "SCENE", "how far quantities go: where a run stops being right, where it stops being stable, from where it is refused",
+     "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is driven on "
+     "its own: a ladder of runs first,\nthen halves where the verdict changes. What was run before with the same scene is not run again. "
+     "extremes.csv, extremes.json and, with a map, map.svg land in\nthe results folder. --strict: exit 3 where a quantity does not hold.\n"
+     "  abut extremes tests/verification/bar_1.yaml --vary time.cfl=0.1..1.2",
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_STRICT | AB_OPTION_VARY |
+         AB_OPTION_JOBS | AB_OPTION_LIMIT | AB_OPTION_MAP,
+     1, 1, ab_command_extremes},
     {"plugins", "[show NAME | new KIND NAME]",
      "list the plugins found, tell all about one (settings with unit, range, default), or begin one",
      "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.\n"
@@ -55,7 +63,6 @@ static const ab_command commands[] = {
      AB_OPTION_PLUGIN_PATH | AB_OPTION_OUTPUT, 0, 3, command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
-    {"extremes", "SCENE", "how far a setting goes", NULL, 0, 0, 0, NULL},
     {.name = NULL},
 };
 enum { command_count = sizeof commands / sizeof *commands - 1 };

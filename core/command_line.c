@@ -25,12 +25,15 @@ static const option_text option_texts[] = {
     {AB_OPTION_SET, "set", 0, "PATH=VALUE", "put VALUE in the scene at PATH, such as contact[0].friction=0.3; may be repeated"},
     {AB_OPTION_PLUGIN_PATH, "plugin-path", 0, "FOLDERS", "look for plugins here first; folders separated by ':'"},
     {AB_OPTION_QUIET, "quiet", 'q', NULL, "no progress and no closing table"},
-    {AB_OPTION_STRICT, "strict", 0, NULL, "exit 3 when an expect of the scene is missed"},
+    {AB_OPTION_STRICT, "strict", 0, NULL, "exit 3 when an expect of the scene is missed (extremes: when a quantity does not hold)"},
     {AB_OPTION_JSON, "json", 0, NULL, "print JSON"},
-    {AB_OPTION_VARY, "vary", 0, "PATH=VALUES", "values to try at PATH, separated by commas, from cheap to dear; may be repeated"},
+    {AB_OPTION_VARY, "vary", 0, "PATH=VALUES",
+     "values to try at PATH, separated by commas, from cheap to dear (extremes: FROM..TO, too); may be repeated"},
     {AB_OPTION_TOLERANCE, "tolerance", 0, "ERROR", "which is the cheapest run with no larger error than this"},
     {AB_OPTION_SECONDS, "seconds", 0, "S", "which is the most accurate run that takes no more processor time than this"},
     {AB_OPTION_JOBS, "jobs", 0, "N", "runs at a time (default: 1); more disturb each other's times"},
+    {AB_OPTION_LIMIT, "limit", 0, "S", "stop a run that takes longer than this"},
+    {AB_OPTION_MAP, "map", 0, "A,B", "run all combinations of two of the quantities, for map.svg"},
     {AB_OPTION_WRITE, "write", 0, "FILE", "write the scene with the settings that were found"},
 };
 enum { option_count = sizeof option_texts / sizeof *option_texts };
@@ -149,6 +152,12 @@ static int read_option(const ab_command *command, const option_text *option, cha
                          "for example --vary constants.cells=20,40,80");
     case AB_OPTION_TOLERANCE: return read_positive(command, value, &line->tolerance, "--tolerance wants an error above 0, not '%s'");
     case AB_OPTION_SECONDS: return read_positive(command, value, &line->seconds, "--seconds wants a time above 0, not '%s'");
+    case AB_OPTION_LIMIT: return read_positive(command, value, &line->limit, "--limit wants seconds above 0, not '%s'");
+    case AB_OPTION_MAP:
+        if (!strchr(value, ','))
+            return wrong(command, "--map wants two names with a comma between them, not '%s'", value, "for example --map cfl,mu");
+        line->map = value;
+        return AB_OK;
     case AB_OPTION_WRITE:
         if (!value[0]) return wrong(command, "%s wants the name of a file", "--write", "");
         line->write = value;

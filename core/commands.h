@@ -16,7 +16,9 @@ enum ab_option_bits { /* options a command takes */
                       AB_OPTION_TOLERANCE = 256u,
                       AB_OPTION_SECONDS = 512u,
                       AB_OPTION_JOBS = 1024u,
-                      AB_OPTION_WRITE = 2048u
+                      AB_OPTION_WRITE = 2048u,
+                      AB_OPTION_LIMIT = 4096u,
+                      AB_OPTION_MAP = 8192u
 };
 
 /* A command line once it is understood. Texts are borrowed from argv. */
@@ -32,6 +34,7 @@ typedef struct ab_command_line {
     const char *tolerance, *seconds; /* as written; NULL: not given */
     int jobs;                        /* 0: not given */
     const char *write;               /* --write FILE */
+    const char *limit, *map;         /* --limit S, --map A,B; NULL: not given */
     char **words;                    /* what is not an option: the scene, or the words of `abut plugins` */
     int word_count;
     const ab_method *methods; /* main's table: how a body of each method is made */
@@ -68,7 +71,8 @@ ab_status ab_command_scene_with(const ab_command_line *line, const ab_override *
 int ab_command_run(const ab_command_line *line);
 int ab_command_check(const ab_command_line *line);
 int ab_command_plan(const ab_command_line *line);
-int ab_command_trade(const ab_command_line *line); /* command_trade.c */
+int ab_command_trade(const ab_command_line *line);    /* command_trade.c */
+int ab_command_extremes(const ab_command_line *line); /* command_extremes.c */
 
 /* results/NAME: NAME is the scene's folder where the file is called scene.yaml, else the file without its ending. */
 void ab_command_folder(const char *scene, char *folder, size_t size);

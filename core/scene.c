@@ -37,6 +37,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_output(r, v[TOP_OUTPUT]);
     ab_scene_take_expects(r, v[TOP_EXPECT]);
     ab_scene_take_trade(r, v[TOP_TRADE]);
+    ab_scene_take_extremes(r, v[TOP_EXTREMES]);
     ab_scene_take_checked(r, v[TOP_CHECKED]); /* last: everything else reads what the plugins themselves declare */
 }
 

@@ -198,6 +198,30 @@ typedef struct ab_trade_spec { /* no ladders: the scene has no `trade` */
     double limit;              /* s of wall time for a run; INFINITY: none */
 } ab_trade_spec;
 
+typedef struct ab_extreme { /* of `extremes`: a quantity to drive */
+    const char *name;
+    const char **paths; /* as for --set; all of them get the value */
+    size_t path_count;
+    const char *value; /* what they get, @ standing for the number; NULL: the number */
+    double from, to, until;
+    bool logarithmic, whole;
+    size_t rungs;
+    const char **values; /* in place of from and to; NULL: none */
+    size_t value_count;
+    double right_to; /* NaN: not said */
+    double same;     /* 0: not asked for */
+    ab_mark mark;
+} ab_extreme;
+
+typedef struct ab_extremes_spec {
+    ab_extreme *quantities;
+    size_t count;
+    bool has_map;
+    size_t map[2];
+    double limit;  /* s of wall time for a run; INFINITY: none */
+    double energy; /* remainder above which energy was made */
+} ab_extremes_spec;
+
 typedef struct ab_scene {
     char *path, *title;
     ab_space space;
@@ -231,6 +255,7 @@ typedef struct ab_scene {
     bool output_contact; /* contact points too */
     bool has_output, has_history;
     ab_trade_spec trade;
+    ab_extremes_spec extremes;
     struct ab_scene_private *private_; /* document, parsers, arena */
 } ab_scene;
 

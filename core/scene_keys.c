@@ -41,6 +41,8 @@ static const ab_key top[] = {
                              "negative, weights that sum to 1; a broken promise ends the run. Same results, slower; for plugins under development"},
     [TOP_WATCHDOG] = {"watchdog", AB_KEY_SECTION, .help = "when a run is ended because it makes energy"},
     [TOP_TRADE] = {"trade", AB_KEY_SECTION, .help = "settings that `abut trade` tries; a run does not look at them"},
+    [TOP_EXTREMES] = {"extremes", AB_KEY_SECTION,
+                      .help = "quantities that `abut extremes` drives until the run breaks; a run does not look at them"},
 };
 SECTION(top, "The scene", top, NULL, "Top level of the file.",
         "abut: 1\ntitle: Block on a plane\nspace: plane-strain\ngravity: [0, -9.81]\n");
@@ -417,33 +419,54 @@ static const ab_key ladder[] = {
 };
 SECTION(ladder, "trade.vary[i]", ladder, NULL, "A list.", "- {set: grid.cell, values: [0.5, 0.25, 0.125]}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,
-                                         &ab_section_damping,
-                                         &ab_section_time,
-                                         &ab_section_grid,
-                                         &ab_section_sides,
-                                         &ab_section_material,
-                                         &ab_section_body,
-                                         &ab_section_shape,
-                                         &ab_section_disc,
-                                         &ab_section_ring,
-                                         &ab_section_fill,
-                                         &ab_section_basis,
-                                         &ab_section_transfer,
-                                         &ab_section_surface,
-                                         &ab_section_mesh,
-                                         &ab_section_patch,
-                                         &ab_section_arc,
-                                         &ab_section_fix,
-                                         &ab_section_motion,
-                                         &ab_section_contact,
-                                         &ab_section_load,
-                                         &ab_section_where,
-                                         &ab_section_monitor,
-                                         &ab_section_history,
-                                         &ab_section_output,
-                                         &ab_section_expect,
-                                         &ab_section_trade,
-                                         &ab_section_ladder,
-                                         &ab_section_watchdog,
-                                         NULL};
+static const ab_key extremes[] = {
+    [EXTREMES_VARY] = {"vary", AB_KEY_SECTION, .help = "list of quantities; each is driven on its own, the others as the scene has them"},
+    [EXTREMES_MAP] = {"map", AB_KEY_SECTION,
+                      .help = "[name, name]: two of the quantities, of which all combinations of rungs are run for a picture, map.svg"},
+    [EXTREMES_LIMIT] = {"limit", AB_KEY_NUMBER, .unit = "s", POSITIVE,
+                        .help = "a run that takes longer is stopped and counts as not stable; default: none"},
+    [EXTREMES_ENERGY] = {"energy", AB_KEY_NUMBER, .unit = "1", .initial = "0.1", POSITIVE,
+                         .help = "the ledger's remainder at the end of a run, as a part of the largest energy that moved, above which the "
+                                 "run made energy and counts as not stable"},
+};
+SECTION(extremes, "extremes", extremes, NULL,
+        "How far quantities go: `abut extremes SCENE` finds where the run stops being right (an expect is missed), where it stops being "
+        "stable, and from where it is refused.",
+        "extremes:\n  vary:\n    - {name: dt, set: time.cfl, from: 0.1, to: 1.2, right_to: 0.9}\n    - {name: stiffness ratio, set: "
+        "constants.ratio, from: 1, "
+        "to: 1e8}\n  map: [dt, stiffness ratio]\n  limit: 20\n");
+
+static const ab_key extreme[] = {
+    [EXTREME_SET] = {"set", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED,
+                     .help = "path of a value, as for --set, or a list of paths that all get it"},
+    [EXTREME_NAME] = {"name", AB_KEY_TEXT, .help = "what the table calls it; default: the path"},
+    [EXTREME_FROM] = {"from", AB_KEY_NUMBER, .help = "where to begin: the easy end"},
+    [EXTREME_TO] = {"to", AB_KEY_NUMBER, .help = "where to end, below or above `from`"},
+    [EXTREME_SCALE] = {"scale", AB_KEY_WORD, .words = "log|linear",
+                       .help = "how rungs are spaced and halved; default: log where the ends have one sign and differ a hundredfold"},
+    [EXTREME_RUNGS] = {"rungs", AB_KEY_INTEGER, .unit = "1", .flags = AB_KEY_RANGE, .min = 2, .max = 64,
+                       .help = "values tried before any is halved, both ends among them; default: 9, or one a decade with log"},
+    [EXTREME_UNTIL] = {"until", AB_KEY_NUMBER, .unit = "1", .initial = "0.02", POSITIVE,
+                       .help = "halving ends where the bracket is this narrow: as a part of the range, with log of the value"},
+    [EXTREME_WHOLE] = {"whole", AB_KEY_FLAG, .initial = "false", .help = "whole numbers alone"},
+    [EXTREME_VALUES] = {"values", AB_KEY_SECTION, .help = "list of values, numbers or words, in place of from and to; none is halved"},
+    [EXTREME_VALUE] = {"value", AB_KEY_TEXT,
+                       .help = "what is put at the path, @ standing for the number: '@*h/c', '{flip: @}'; default: the number"},
+    [EXTREME_RIGHT_TO] = {"right_to", AB_KEY_NUMBER,
+                          .help = "it must be right up to there; beyond, a run may also end with an error of its own. Without it, runs "
+                                  "must be right or refused everywhere"},
+    [EXTREME_SAME] = {"same", AB_KEY_NUMBER, .unit = "1", POSITIVE,
+                      .help = "with `values`: the number that each expect looks at, as a part of its reference, must be that of the first "
+                              "value to within this"},
+};
+SECTION(extreme, "extremes.vary[i]", extreme, NULL, "A list.",
+        "- {name: friction, set: constants.mu, from: 1e-3, to: 1e6}\n- {set: constants.turned, values: [0, 1], same: 1e-10}\n");
+
+const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,  &ab_section_time,    &ab_section_grid,
+                                         &ab_section_sides,    &ab_section_material, &ab_section_body,    &ab_section_shape,
+                                         &ab_section_disc,     &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
+                                         &ab_section_transfer, &ab_section_surface,  &ab_section_mesh,    &ab_section_patch,
+                                         &ab_section_arc,      &ab_section_fix,      &ab_section_motion,  &ab_section_contact,
+                                         &ab_section_load,     &ab_section_where,    &ab_section_monitor, &ab_section_history,
+                                         &ab_section_output,   &ab_section_expect,   &ab_section_trade,   &ab_section_ladder,
+                                         &ab_section_watchdog, &ab_section_extremes, &ab_section_extreme, NULL};

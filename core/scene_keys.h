@@ -26,6 +26,7 @@ enum {
     TOP_CHECKPOINT,
     TOP_TRADE,
     TOP_CHECKED,
+    TOP_EXTREMES,
     TOP_WATCHDOG,
     TOP_KEYS
 };
@@ -86,12 +87,28 @@ enum {
 enum { WATCHDOG_ENERGY, WATCHDOG_STOP, WATCHDOG_KEYS };
 enum { TRADE_VARY, TRADE_ERROR, TRADE_TOLERANCE, TRADE_SECONDS, TRADE_LIMIT, TRADE_KEYS };
 enum { LADDER_SET, LADDER_VALUES, LADDER_NAME, LADDER_KEYS };
+enum { EXTREMES_VARY, EXTREMES_MAP, EXTREMES_LIMIT, EXTREMES_ENERGY, EXTREMES_KEYS };
+enum {
+    EXTREME_SET,
+    EXTREME_NAME,
+    EXTREME_FROM,
+    EXTREME_TO,
+    EXTREME_SCALE,
+    EXTREME_RUNGS,
+    EXTREME_UNTIL,
+    EXTREME_WHOLE,
+    EXTREME_VALUES,
+    EXTREME_VALUE,
+    EXTREME_RIGHT_TO,
+    EXTREME_SAME,
+    EXTREME_KEYS
+};
 
 extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_section_grid, ab_section_sides, ab_section_material,
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
     ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
-    ab_section_ladder, ab_section_watchdog;
+    ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

@@ -35,6 +35,9 @@ void ab_scene_take_history(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_output(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_expects(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_trade(ab_scene_reader *reader, const ab_node *node); /* after the expects */
+void ab_scene_take_extremes(ab_scene_reader *reader, const ab_node *node);
+/* Of `trade` and `extremes`: a path as for --set or a list of them; false with the mistake reported. */
+bool ab_scene_take_paths(ab_scene_reader *reader, const ab_node *node, const char *where, const char ***paths, size_t *count);
 
 bool ab_scene_take_shape(ab_scene_reader *reader, const ab_node *node, const char *where, ab_shape_spec *shape);
 bool ab_scene_take_where(ab_scene_reader *reader, const ab_node *node, const char *where, ab_where *set);

@@ -22,7 +22,7 @@ static bool is_known(ab_scene_reader *r, const ab_node *node, const char *path, 
     return false;
 }
 
-static bool take_paths(ab_scene_reader *r, const ab_node *node, const char *where, ab_ladder *ladder) {
+bool ab_scene_take_paths(ab_scene_reader *r, const ab_node *node, const char *where, const char ***paths, size_t *path_count) {
     const size_t count = node->kind == AB_NODE_LIST ? node->count : 1;
     char path[AB_WHERE];
     ab_where_join(path, where, "set");
@@ -30,13 +30,13 @@ static bool take_paths(ab_scene_reader *r, const ab_node *node, const char *wher
         ab_report_error(r->base.report, node->mark, "%s names %zu paths; give 1 to %d", path, count, AB_TRADE_PATHS);
         return false;
     }
-    ladder->paths = ab_reader_take(&r->base, count, sizeof *ladder->paths);
-    if (ladder->paths == NULL) return false;
+    *paths = ab_reader_take(&r->base, count, sizeof **paths);
+    if (*paths == NULL) return false;
     for (size_t i = 0; i < count; i++) {
         const ab_node *item = node->kind == AB_NODE_LIST ? node->items[i] : node;
         const char *text = ab_scene_word(r, item, path, "a path as for --set, such as constants.cells");
         if (text == NULL || !is_known(r, item, path, text)) return false;
-        ladder->paths[ladder->path_count++] = ab_reader_text(&r->base, text);
+        (*paths)[(*path_count)++] = ab_reader_text(&r->base, text);
     }
     return true;
 }
@@ -45,7 +45,7 @@ static void take_ladder(ab_scene_reader *r, const ab_node *node, const char *whe
     const ab_node *v[LADDER_KEYS];
     ladder->mark = node->mark;
     if (!ab_section_open(&r->base, &ab_section_ladder, node, where, v) || v[LADDER_SET] == NULL || v[LADDER_VALUES] == NULL) return;
-    if (!take_paths(r, v[LADDER_SET], where, ladder)) return;
+    if (!ab_scene_take_paths(r, v[LADDER_SET], where, &ladder->paths, &ladder->path_count)) return;
     char *name = NULL, path[AB_WHERE];
     ab_read_text(&r->base, &ab_section_ladder.keys[LADDER_NAME], v[LADDER_NAME], where, &name);
     ladder->name = name != NULL ? name : ladder->paths[0];

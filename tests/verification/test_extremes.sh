@@ -1,0 +1,80 @@
+#!/bin/bash
+# cost: 6
+# abut extremes: a limit that is known exactly is found, runs that are there already, refusals, islands, maps, limits, signals, bad input. test_extremes.sh BUILD
+set -u
+build=$(realpath "${1:?the build folder}")
+here=$(cd "$(dirname "$0")" && pwd)
+cd "${ABUT_SCRATCH:-$(mktemp -d)}" || exit 1
+missed=0
+must() { # what, then a command that must succeed
+    local what=$1
+    shift
+    if "$@"; then echo "passed  $what"; else echo "MISSED  $what" && missed=$((missed + 1)); fi
+}
+says() { # status, pattern, command ...: it ends so, and says so
+    local status=$1 pattern=$2
+    shift 2
+    "$@" >said 2>&1
+    local got=$?
+    [ $got -eq "$status" ] && grep -Eq "$pattern" said || { echo "        exit $got"; sed 's/^/        /' said; return 1; }
+}
+cat >bar.yaml <<'SCENE' # linear elements, lumped: stable to dt c/h = 1 exactly, whatever the mesh
+abut: 1
+constants: {L: 25, cells: 10, E: 100, rho: 1, v0: 1e-4, part: 0.5, c: sqrt(E/rho), h: L/cells, w: 0.5*pi*c/L, nu: 0, mu: 0}
+time: {end: 20*pi/w, dt: part*h/c}
+materials: {bar: {model: linear-elastic, E: E, nu: nu, density: rho}}
+bodies:
+  bar:
+    method: finite-elements
+    material: bar
+    mesh: {box: [[0, 0], [L, 2*h]], elements: [cells, 2], type: q4}
+    fix: [{where: {side: left}, velocity: [0, null]}, {where: {side: bottom}, velocity: [null, 0]}]
+    velocity: ["v0*sin(pi*x/(2*L))", 0]
+monitors: [{name: end, body: bar, value: displacement.x, at: [L, 0]}]
+expect: [{name: end, monitor: end, reference: v0/w, norm: peak, tolerance: 0.02}]
+extremes:
+  vary:
+    - {name: dt, set: time.dt, value: "@*h/c", from: 0.5, to: 1.2, right_to: 0.98}
+    - {name: nu, set: constants.nu, from: 0, to: 0.6, until: 0.1}
+  limit: 20
+SCENE
+must "the stable limit of a bar" says 0 "^. dt . 1, not 1.01 . 1, not 1.01 . nowhere . yes . .*turned inside out" "$build/abut" extremes bar.yaml -o bar -q
+must "right, stable and refused in one line" says 0 "^. nu . 0.26, not 0.3 . 0.4, not 0.45 . 0.5 . no . body 'bar'" "$build/abut" extremes bar.yaml -o bar -q
+must "the files it leaves" python3 - <<'PYTHON'
+import csv, json
+extremes = json.load(open("bar/extremes.json"))
+dt, nu = extremes["quantities"]
+last, first = float(dt["stable"]["last"]), float(dt["stable"]["first_not"])
+assert last <= 1 < first and first - last <= 0.02 * 0.7 + 1e-12, dt["stable"]
+assert dt["holds"] and dt["right"] == dt["stable"] and dt["accepted"]["first_not"] is None
+assert [p["verdict"] for p in dt["pieces"]] == ["right", "unstable"]
+assert "inside out" in dt["how_it_ends"]
+rows = list(csv.DictReader(open("bar/extremes.csv")))
+assert len(rows) == len(dt["runs"]) + len(nu["runs"]) and rows[0]["verdict"] == "right" and float(rows[0]["error"]) < 0.02
+PYTHON
+must "runs that are there are not run again" bash -c "'$build/abut' extremes bar.yaml -o bar 2>&1 >/dev/null | grep -vc ' before, ' | grep -qx 0"
+must "runs of another scene are" bash -c "sed 's/v0: 1e-4/v0: 2e-4/' bar.yaml >other.yaml; '$build/abut' extremes other.yaml --vary constants.nu=0,0.1 -o bar 2>&1 | grep -q '2 of 2.*done, '"
+must "by the command line" says 0 "^. constants.part . 1, not 1.0" "$build/abut" extremes bar.yaml --vary constants.part=0.5..1.2 -o line -q
+must "what must be right and is not, with --strict" says 3 "dt does not hold: unstable at" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.1 --strict -o bar -q
+must "pieces that do not go one way" says 0 "v0 does not go one way: right 1e-4, wrong 0, right 2e-4" "$build/abut" extremes bar.yaml --vary constants.v0=1e-4,0,2e-4 --set 'expect=[{name: end, monitor: end, reference: 1e-4/w, norm: peak, scale: 1/w, tolerance: 1e-3}]' --set 'expect[0].reference="max(v0, 1e-4)/w"' --set 'expect[0].tolerance=1e-5' -o pieces -q
+must "a map" says 0 "0.1  # # o|# right" "$build/abut" extremes bar.yaml --vary constants.part=0.5,0.9,1.1 --vary constants.nu=0,0.1,0.5 --map part,nu -o map -q
+must "its picture" python3 - <<'PYTHON'
+import json, xml.dom.minidom
+cells = json.load(open("map/extremes.json"))["map"]
+verdicts = {(c["value"], c["second_value"]): c["verdict"] for c in cells}
+assert verdicts["0.5", "0"] == "right" and verdicts["1.1", "0"] == "unstable" and verdicts["0.9", "0.5"] == "refused", verdicts
+rects = xml.dom.minidom.parse("map/map.svg").getElementsByTagName("rect")
+coloured = [r for r in rects if r.getElementsByTagName("title")]
+assert len(coloured) == 9 and {r.getAttribute("fill") for r in coloured} == {"#4c9f50", "#c0392b", "#9aa0ad"} | ({"#eebc3a"} if "wrong" in verdicts.values() else set())
+PYTHON
+must "the limit of time" says 0 "over the limit of 0.3 s" "$build/abut" extremes bar.yaml --vary constants.cells=10,2000 --limit 0.3 -o limit -q
+must "a signal leaves what is done" says 124 "1 of 2 runs have no verdict" timeout -s INT 2 "$build/abut" extremes bar.yaml --vary constants.cells=10,3000 -o signal
+must "and it goes on from there" says 0 "done before" "$build/abut" extremes bar.yaml --vary constants.cells=10,20 -o signal
+must "an unknown constant" says 2 "did you mean 'part'" "$build/abut" extremes bar.yaml --vary constants.prat=1..2 -o never
+must "an unknown key" says 2 "wrong.yaml:17:[0-9]+: error: unknown key 'form' in extremes.vary\[1\]; did you mean 'from'" bash -c "sed 's/nu, from/nu, form/' bar.yaml >wrong.yaml; '$build/abut' extremes wrong.yaml -o never"
+must "values that none goes" says 2 "no value of 'bodies.bar.method' is accepted" "$build/abut" extremes bar.yaml --vary bodies.bar.method=finite,elements -o never
+must "nothing to drive" says 2 "nothing to drive" bash -c "sed '/^extremes/,\$d' bar.yaml >bare.yaml; '$build/abut' extremes bare.yaml -o never"
+must "log through 0" says 2 "neither may be 0" "$build/abut" extremes bar.yaml --set extremes.vary[1].scale=log -o never
+must "a map of one" says 2 "no quantity 'mu'" "$build/abut" extremes bar.yaml --map dt,mu -o never
+must "nothing is written where the input is wrong" test ! -e never
+[ $missed -eq 0 ]
