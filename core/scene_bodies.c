@@ -253,7 +253,9 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
         missing(r, mark, where, "material", body->method, "the name of one of the materials");
     ab_read_vector(&r->base, &key[BODY_VELOCITY], v[BODY_VELOCITY], where, body->velocity);
     ab_read_flag(&r->base, &key[BODY_GRAVITY], v[BODY_GRAVITY], where, &body->gravity);
-    body->has_force = v[BODY_FORCE] != NULL && ab_read_vector(&r->base, &key[BODY_FORCE], v[BODY_FORCE], where, body->force);
+    if (v[BODY_FORCE] != NULL && ab_read_vector(&r->base, &key[BODY_FORCE], v[BODY_FORCE], where, body->force)) /* zeros are none */
+        body->has_force = body->force[0].expression != NULL || body->force[1].expression != NULL || body->force[0].value != 0 ||
+                          body->force[1].value != 0;
     if (method != 0) take_outline(r, v, where, method, mark, body);
     if (method == POINTS) take_points(r, v, where, body);
     if (v[BODY_FIX] != NULL) ab_scene_take_fix(r, v[BODY_FIX], ab_where_join(path, where, "fix"), body);
