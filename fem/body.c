@@ -116,8 +116,8 @@ static ab_status complain(const fem_body *body, fem_trouble trouble, size_t elem
 static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report) {
     fem_body *body = (fem_body *)domain;
     const ab_class *class_ = &body->material->loaded->class_;
-    body->ask_wave_speed =
-        (class_->gives & AB_GIVE_WAVE_SPEED) && (class_->needs & AB_NEED_DEFORMATION_GRADIENT) && step->number % WAVE_SPEED_EVERY == 0;
+    body->ask_wave_speed = (class_->gives & AB_GIVE_WAVE_SPEED) && (class_->needs & (AB_NEED_DEFORMATION_GRADIENT | AB_NEED_DENSITY)) &&
+                           step->number % WAVE_SPEED_EVERY == 0;
     size_t culprit = 0;
     const fem_trouble trouble = fem_elements_step(body, step, &culprit);
     if (trouble != FEM_FINE) return complain(body, trouble, culprit, step, report);

@@ -81,7 +81,8 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     mpm_loads_follow(body, step);
     mpm_outline_follow(body, step);
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
-                           (body->material->loaded->class_.needs & AB_NEED_DEFORMATION_GRADIENT) && step->number % WAVE_SPEED_EVERY == 0;
+                           (body->material->loaded->class_.needs & (AB_NEED_DEFORMATION_GRADIENT | AB_NEED_DENSITY)) &&
+                           step->number % WAVE_SPEED_EVERY == 0;
     if (body->f_bar) mpm_volumetric_strain(body, step);
     int failed = 0;
     const int none = INT_MAX;

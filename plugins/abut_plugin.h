@@ -118,7 +118,7 @@ typedef struct ab_host {
 enum ab_needs { /* what a class asks for; what nobody asks for is not computed and arrives as NULL */
     AB_NEED_DEFORMATION_GRADIENT = 1u,
     AB_NEED_VELOCITY_GRADIENT = 2u,
-    AB_NEED_DENSITY = 4u,
+    AB_NEED_DENSITY = 4u, /* materials with this or the first one are asked for their wave speed again and again, for their stiffness may change; others once */
     /* contact finders */
     AB_NEED_SHARED_NODES = 16u,
     AB_NEED_MASS_GRADIENT = 32u,

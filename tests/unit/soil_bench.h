@@ -135,11 +135,9 @@ static inline soil_point soil_point_of(soil_bench *b, int components) {
 /* What the stress would be after an increment of strain; `keep`: the point moves on. */
 static inline void soil_point_step(soil_point *p, const double strain[6], double stress[6], int keep) {
     soil_bench *b = p->bench;
-    for (int i = 0; i < 8; i++) {
-        for (int c = 0; c < p->components; c++) b->strain[c * 8 + i] = strain[c], b->stress0[c * 8 + i] = p->stress[c];
-        for (int s = 0; s < SOIL_STATES; s++) b->state0[s * 8 + i] = p->state[s];
-    }
-    if (soil_bench_update(b, p->components, 8, 8) != 0) fail_msg("the material gave up: %s", b->service.message);
+    for (int c = 0; c < p->components; c++) b->strain[c * 8] = strain[c], b->stress0[c * 8] = p->stress[c];
+    for (int s = 0; s < SOIL_STATES; s++) b->state0[s * 8] = p->state[s];
+    if (soil_bench_update(b, p->components, 1, 8) != 0) fail_msg("the material gave up: %s", b->service.message);
     for (int c = 0; c < 6; c++) stress[c] = c < p->components ? b->stress1[c * 8] : 0.0;
     if (!keep) return;
     for (int c = 0; c < p->components; c++) p->stress[c] = stress[c], p->strain[c] += strain[c];
@@ -148,15 +146,17 @@ static inline void soil_point_step(soil_point *p, const double strain[6], double
     p->speed = b->speed[0];
 }
 
-/* A step with some components of strain given, and others such that their stress is what `held` says (`free_` has 1 for these): Newton's method with a tangent by differences,
- * to 1e-9 of `scale`. `strain` has the given increments and takes the others as a first guess; it is left with what was found. */
-static inline void soil_point_mixed(soil_point *p, double strain[6], const int free_[6], const double held[6], double scale) {
+/* A step with some components of strain given, and others such that their stress is what `held` says (`free_` has 1 for these): Newton's
+ * method with a tangent by differences, to 1e-9 of `scale`. `round`: z is strained as x is (triaxial tests), so that only x needs to be held.
+ * `strain` has the given increments and takes the others as a first guess; it is left with what was found. */
+static inline void soil_point_mixed(soil_point *p, double strain[6], const int free_[6], bool round, const double held[6], double scale) {
     int list[6], n = 0;
     for (int c = 0; c < p->components; c++)
         if (free_[c]) list[n++] = c;
     double stress[6];
     for (int iteration = 0; iteration < 60; iteration++) {
         double A[6][7], worst = 0.0;
+        if (round) strain[2] = strain[0];
         soil_point_step(p, strain, stress, 0);
         for (int r = 0; r < n; r++) A[r][n] = held[list[r]] - stress[list[r]], worst = fmax(worst, fabs(A[r][n]));
         if (worst <= 1e-9 * scale) break;
@@ -166,6 +166,7 @@ static inline void soil_point_mixed(soil_point *p, double strain[6], const int f
             const double h = 1e-9;
             memcpy(moved, strain, sizeof moved);
             moved[list[k]] += h;
+            if (round) moved[2] = moved[0];
             soil_point_step(p, moved, other, 0);
             for (int r = 0; r < n; r++) A[r][k] = (other[list[r]] - stress[list[r]]) / h;
         }
