@@ -32,14 +32,21 @@ void ab_scene_take_axis(ab_scene_reader *r, ab_mark mark) {
 }
 
 static void check_body(ab_scene_reader *r, const ab_body_spec *body) {
+    const ab_scene *scene = r->scene;
     double low[2], high[2];
     if (ab_body_bounds(body, low, high) && low[0] < -1e-9 * (high[0] - low[0]))
         ab_report_error(r->base.report, body->mark,
                         "body '%s' reaches to x = %.10g m, but in an axisymmetric scene x is the radius; draw the half right of the axis",
                         body->name, low[0]);
-    if (body->method != NULL && strcmp(body->method, "material-points") != 0)
-        ab_report_error(r->base.report, body->mark, "body '%s': method %s is not there yet in axisymmetric scenes; use material-points",
-                        body->name, body->method);
+    if (body->method != NULL && strcmp(body->method, "finite-elements") == 0 && scene->grid_cell > 0.0 && scene->grid_from[0] > 0.0)
+        ab_report_error(
+            r->base.report, body->mark,
+            "body '%s' of finite elements: the grid of an axisymmetric scene must begin at the axis then; write grid.from: [0, %.10g]",
+            body->name, scene->grid_from[1]);
+    if (body->method != NULL && strcmp(body->method, "rigid") == 0)
+        ab_report_error(r->base.report, body->mark,
+                        "body '%s': method %s is not there yet in axisymmetric scenes; use material-points or finite-elements", body->name,
+                        body->method);
     if (body->basis != NULL && strcmp(body->basis, "cpdi") == 0)
         ab_report_error(r->base.report, body->mark,
                         "bodies.%s.basis: cpdi is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",

@@ -280,6 +280,11 @@ static void lay_out(fem_body *body) {
     body->gather_start[0] = 0;
 }
 
+/* The axis holds its nodes radially. */
+static bool on_axis(const fem_body *body, size_t node) {
+    return body->element->axisymmetric && body->mesh->x[2 * node] <= 1e-9 * (body->mesh->high[0] - body->mesh->low[0]);
+}
+
 static ab_status weigh(fem_body *body, ab_report *report) {
     const size_t nodes = (size_t)body->element->nodes;
     for (size_t b = 0; b < body->blocks; ++b) {
@@ -295,6 +300,7 @@ static ab_status weigh(fem_body *body, ab_report *report) {
                                    body->domain.spec->name, (unsigned long long)(body->mesh->node_id ? body->mesh->node_id[i] : i),
                                    body->mesh->x[2 * i], body->mesh->x[2 * i + 1], body->mass[i]);
         body->inverse_mass[2 * i] = body->inverse_mass[2 * i + 1] = 1.0 / body->mass[i];
+        if (on_axis(body, i)) body->inverse_mass[2 * i] = 0.0;
     }
     return AB_OK;
 }
@@ -348,7 +354,7 @@ static ab_status make(fem_body *body, ab_report *report) {
         for (size_t c = 0; c < 2; ++c) {
             const double *x = body->mesh->x + 2 * i, v = ab_number_at(spec->velocity + c, 0.0, x[0], x[1], 0.0);
             AB_TRY(ab_number_finite(spec->velocity + c, v, 0.0, x, report, "bodies.%s.velocity[%zu]", spec->name, c));
-            body->velocity[2 * i + c] = v;
+            body->velocity[2 * i + c] = c == 0 && on_axis(body, i) ? 0.0 : v;
         }
     AB_TRY(fem_held_move(body, 0.0, report));
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
@@ -365,7 +371,14 @@ ab_status fem_create(const ab_scene *scene, size_t index, int threads, ab_domain
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
     body->domain = (ab_domain){.ops = &OPS, .spec = spec, .dimension = 2, .index = index};
     body->scene = scene;
-    body->element = fem_element_of(spec->mesh.type);
+    body->element = scene->space == AB_SPACE_AXISYMMETRIC ? fem_element_axisymmetric_of(spec->mesh.type) : fem_element_of(spec->mesh.type);
+    if (!body->element) {
+        free(body);
+        return ab_report_error(
+            report, spec->mesh.mark,
+            "bodies.%s.mesh.type: %s is not there yet in axisymmetric scenes; use q4, with f_bar: true where it locks, q8 or q8r",
+            spec->name, fem_element_of(spec->mesh.type)->name);
+    }
     body->f_bar = spec->mesh.f_bar;
     body->hourglass = spec->mesh.hourglass;
     body->gravity = spec->gravity;

@@ -1,5 +1,5 @@
 /* element.h: the quadrilateral elements: eight elements of one type at a time, lane l of every row being one element. Pure functions of arrays; no memory, no
- * state but what the caller hands over. Plane strain, per m of thickness. Inside fem/ only.
+ * state but what the caller hands over. Plane strain, per m of thickness; axisymmetric elements are whole rings, their x the radius. Inside fem/ only.
  *
  * Rows: positions and forces x[2*a + c] of node a; stress in the order (xx, yy, zz, xy); displacement gradient (xx, xy, yx, yy), H_ij = d(du_i)/dx_j. */
 #ifndef AB_FEM_ELEMENT_H
@@ -26,11 +26,13 @@ typedef struct fem_block {                                 /* eight elements in 
     double control_first[8];                            /* the same of those at its start alone (q4r; the others leave it) */
     double jacobian
         [8]; /* out of strain: smallest det J over Gauss points and corners at the end, over that of a square of the same area; <= 0: inverted */
+    double hoop[FEM_GAUSS][8]; /* out of strain, axisymmetric elements: u_r/r of the step; their volumes are in m3 */
 } fem_block;
 
 typedef struct fem_element {
     const char *name;
     int nodes, gauss, extra;
+    bool axisymmetric;
     void (*strain)(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
     void (*force)(fem_block *, bool f_bar);
     /* Masses of the nodes, kg: row sum (q4, q4r, q6), diagonal scaling of the consistent mass (q8, q8r: Hinton, Rock, Zienkiewicz 1976). x: 2*nodes rows. */
@@ -38,6 +40,7 @@ typedef struct fem_element {
 } fem_element;
 
 const fem_element *fem_element_of(ab_element_type);
+const fem_element *fem_element_axisymmetric_of(ab_element_type); /* NULL: not there yet */
 
 /* Largest eigenfrequency squared, 1/s2, of each of eight free elements with lumped masses: bounds that of the whole mesh (Irons). Power iteration to 1e-3, never
  * below the true value by more. */

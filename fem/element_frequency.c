@@ -3,12 +3,13 @@
  * Their stiffness is a sum of squares, K = R^T R: in plane strain each Gauss point gives the rows sqrt(V (lambda + mu)) tr, sqrt(V mu)
  * (exx - eyy) and sqrt(V mu) gxy. With masses in the columns, the frequencies squared are the eigenvalues of R^T R or of R R^T,
  * whichever is smaller. The largest is found by power iteration on the matrix instead of a vector: squared ten times it is the 1024th
- * power, and no starting vector can miss the mode. */
+ * power, and no starting vector can miss the mode. Rings have four rows: sqrt(V (lambda + 2/3 mu)) tr, sqrt(V mu) (exx - eyy), sqrt(V mu) gxy and
+ * sqrt(V mu/3) (exx + eyy - 2 ett). */
 #include <string.h>
 
 #include "fem/element_inner.h"
 
-enum { FREE = 2 * FEM_NODES, ROWS = 3 * FEM_GAUSS, SQUARINGS = 10 };
+enum { FREE = 2 * FEM_NODES, ROWS = 4 * FEM_GAUSS, SQUARINGS = 10 };
 
 typedef struct squares { /* row r, column 2*a + c */
     int count, columns;
@@ -31,6 +32,21 @@ static void add_point(squares *s, lanes volume, const fem_elastic *elastic, cons
     s->count += dilatation ? 3 : 2;
 }
 
+/* The same of a ring; hoop: N/r of the functions. */
+static void add_ring(squares *s, lanes volume, const fem_elastic *elastic, const lanes (*g)[2], const lanes *hoop, bool dilatation) {
+    const lanes bulk = lanes_root((elastic->lambda + 2.0 / 3.0 * elastic->mu) * volume), third = lanes_root((elastic->mu / 3.0) * volume);
+    add_point(s, volume, elastic, g, false);
+    lanes(*row)[FREE + 4] = s->row + s->count;
+    for (int a = 0; 2 * a < s->columns; a++) {
+        row[0][2 * a] = third * (g[a][0] - 2.0 * hoop[a]);
+        row[0][2 * a + 1] = third * g[a][1];
+        if (!dilatation) continue;
+        row[1][2 * a] = bulk * (g[a][0] + hoop[a]);
+        row[1][2 * a + 1] = bulk * g[a][1];
+    }
+    s->count += dilatation ? 2 : 1;
+}
+
 static fem_jacobian jacobian(int nodes, const double (*x)[8], const double (*dn)[2], int first) {
     fem_jacobian j = {.xx = {0}};
     for (int a = 0; a < nodes; a++) {
@@ -48,10 +64,21 @@ static void push(fem_jacobian j, lanes r, lanes xi, lanes eta, lanes g[2]) {
     g[1] = (j.xx * eta - j.xy * xi) * r;
 }
 
-static void stiffness(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass, int first,
-                      squares *s) {
+/* Length of the circle at a place, m, and N/r of the nodes there. */
+static lanes circumference(int nodes, const double (*x)[8], const double place[2], int first, lanes *hoop) {
+    double n[FEM_NODES];
+    lanes radius = {0};
+    fem_shape(nodes, place[0], place[1], n);
+    for (int a = 0; a < nodes; a++) radius += n[a] * lanes_load(x[2 * a] + first);
+    for (int a = 0; a < nodes; a++) hoop[a] = n[a] / radius;
+    return fem_circumference(radius);
+}
+
+static inline __attribute__((always_inline)) void stiffness_of(const fem_element *element, const double (*x)[8], const fem_elastic *elastic,
+                                                               bool f_bar, double hourglass, int first, squares *s, const bool rings) {
     const int nodes = element->nodes;
-    const bool q4 = element->strain == fem_q4_strain, q4r = element->strain == fem_q4r_strain, q6 = element->strain == fem_q6_strain;
+    const bool q4 = element->strain == fem_q4_strain || element->strain == fem_q4_strain_rings, q4r = element->strain == fem_q4r_strain,
+               q6 = element->strain == fem_q6_strain;
     f_bar = f_bar && q4;
     double dn0[FEM_NODES][2];
     fem_shape_derivatives(nodes, 0, 0, dn0);
@@ -59,25 +86,30 @@ static void stiffness(const fem_element *element, const double (*x)[8], const fe
     const lanes det0 = fem_det(j0), r0 = 1.0 / det0;
     s->count = 0;
     s->columns = 2 * nodes + (q6 ? 4 : 0);
-    lanes mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2];
+    lanes mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2], hoop[FEM_NODES];
     for (int q = 0; q < element->gauss; q++) {
         double place[2], weight, dn[FEM_NODES][2];
         fem_gauss(element, q, place, &weight);
         fem_shape_derivatives(nodes, place[0], place[1], dn);
         const fem_jacobian j = jacobian(nodes, x, dn, first);
-        const lanes det = fem_det(j), r = 1.0 / det, volume = weight * det;
+        const lanes det = fem_det(j), r = 1.0 / det;
+        const lanes volume = rings ? weight * det * circumference(nodes, x, place, first, hoop) : weight * det;
         for (int a = 0; a < nodes; a++) push(j, r, lanes_set(dn[a][0]), lanes_set(dn[a][1]), g[a]);
         if (q6) {
             push(j0, r, lanes_set(-2 * place[0]), lanes_set(0), g[4]);
             push(j0, r, lanes_set(0), lanes_set(-2 * place[1]), g[5]);
         }
-        add_point(s, volume, elastic, g, !f_bar);
+        if (rings) {
+            add_ring(s, volume, elastic, g, hoop, !f_bar);
+            for (int a = 0; a < nodes; a++) mean[2 * a] += volume * hoop[a];
+        } else
+            add_point(s, volume, elastic, g, !f_bar);
         area += volume;
         for (int a = 0; a < nodes; a++)
             for (int c = 0; c < 2; c++) mean[2 * a + c] += volume * g[a][c];
     }
     if (f_bar) {
-        const lanes bulk = lanes_root((elastic->lambda + elastic->mu) / area);
+        const lanes bulk = lanes_root((elastic->lambda + (rings ? 2.0 / 3.0 * elastic->mu : elastic->mu)) / area);
         for (int k = 0; k < s->columns; k++) s->row[s->count][k] = bulk * mean[k];
         s->count++;
     }
@@ -96,6 +128,14 @@ static void stiffness(const fem_element *element, const double (*x)[8], const fe
         }
         s->count += 2;
     }
+}
+
+static void stiffness(const fem_element *element, const double (*x)[8], const fem_elastic *elastic, bool f_bar, double hourglass, int first,
+                      squares *s) {
+    if (element->axisymmetric)
+        stiffness_of(element, x, elastic, f_bar, hourglass, first, s, true);
+    else
+        stiffness_of(element, x, elastic, f_bar, hourglass, first, s, false);
 }
 
 /* a = R^T R (by columns) or R R^T (by rows), lower triangle; its size. */

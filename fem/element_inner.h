@@ -139,8 +139,13 @@ static inline fem_hourglass fem_hourglass_of(fem_jacobian j, lanes r, const fem_
     return s;
 }
 
+/* Length of the circle at a radius, m. */
+static inline lanes fem_circumference(lanes radius) { return 6.283185307179586 * radius; }
+
 void fem_q4_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q4_force(fem_block *, bool f_bar);
+void fem_q4_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
+void fem_q4_force_rings(fem_block *, bool f_bar);
 void fem_q4r_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q4r_force(fem_block *, bool f_bar);
 void fem_q6_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
@@ -149,5 +154,9 @@ void fem_q8_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglas
 void fem_q8_force(fem_block *, bool f_bar);
 void fem_q8r_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q8r_force(fem_block *, bool f_bar);
+void fem_q8_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
+void fem_q8_force_rings(fem_block *, bool f_bar);
+void fem_q8r_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
+void fem_q8r_force_rings(fem_block *, bool f_bar);
 
 #endif

@@ -1,8 +1,18 @@
 /* element_q8.c: the serendipity quadrilateral with eight nodes, 3 x 3 or 2 x 2 Gauss points.
  *
  * A field is c + xi a + eta b + xi eta h + xi^2 aa + eta^2 bb + xi^2 eta aab + xi eta^2 abb; the loops over Gauss points see these seven
- * and the forces conjugate to them, not the nodes. */
+ * and the forces conjugate to them, not the nodes. Compiled once more with RINGS: as rings about the axis x = 0, volumes times 2 pi r, and hoops that stretch by
+ * u_r/r. */
 #include "fem/element_inner.h"
+
+#ifndef RINGS
+#define RINGS 0
+#endif
+#if RINGS
+#define NAME(f) f##_rings
+#else
+#define NAME(f) f
+#endif
 
 typedef struct serendipity {
     lanes a[2], b[2], h[2], aa[2], bb[2], aab[2], abb[2];
@@ -36,9 +46,25 @@ static inline fem_jacobian serendipity_at(const serendipity *f, double xi, doubl
     };
 }
 
+#if RINGS
+/* The radial component itself; the constant from the middles of the sides. */
+static inline lanes radial_centre(const double (*x)[8], const serendipity *f, int first) {
+    return 0.25 * (lanes_load(x[8] + first) + lanes_load(x[10] + first) + lanes_load(x[12] + first) + lanes_load(x[14] + first)) -
+           0.5 * (f->aa[0] + f->bb[0]);
+}
+static inline lanes radial_at(lanes centre, const serendipity *f, double xi, double eta) {
+    return centre + xi * f->a[0] + eta * f->b[0] + xi * eta * f->h[0] + xi * xi * f->aa[0] + eta * eta * f->bb[0] +
+           xi * xi * eta * f->aab[0] + xi * eta * eta * f->abb[0];
+}
+#endif
+
 static inline __attribute__((always_inline)) void strain(fem_block *block, const int side, int first) {
     const serendipity x = serendipity_of(block->start, NULL, first), u = serendipity_of(block->end, block->start, first);
     lanes area = {0}, lowest = lanes_set(1e300);
+#if RINGS
+    const serendipity y = serendipity_of(block->end, NULL, first);
+    const lanes start = radial_centre(block->start, &x, first), moved = radial_centre(block->end, &y, first) - start;
+#endif
     for (int q = 0; q < side * side; q++) {
         const double g = side == 2 ? FEM_GAUSS_2 : FEM_GAUSS_3, step = side == 2 ? 2 * g : g;
         const int column = q % side, row = q / side;
@@ -51,8 +77,15 @@ static inline __attribute__((always_inline)) void strain(fem_block *block, const
         lanes_store(block->h[q][1] + first, h.xy);
         lanes_store(block->h[q][2] + first, h.yx);
         lanes_store(block->h[q][3] + first, h.yy);
+#if RINGS
+        const lanes r0 = radial_at(start, &x, xi, eta), ur = radial_at(moved, &u, xi, eta);
+        lanes_store(block->hoop[q] + first, ur / r0);
+        lanes_store(block->volume0[q] + first, fem_circumference(r0) * (w * det));
+        lanes_store(block->volume[q] + first, fem_circumference(r0 + ur) * (w * end));
+#else
         lanes_store(block->volume0[q] + first, w * det);
         lanes_store(block->volume[q] + first, w * end);
+#endif
         area += w * end;
         lowest = lanes_min(lowest, end);
     }
@@ -68,11 +101,29 @@ static inline __attribute__((always_inline)) void strain(fem_block *block, const
 static inline __attribute__((always_inline)) void force(fem_block *block, const int side, int first) {
     const serendipity y = serendipity_of(block->end, NULL, first);
     serendipity s = {.a = {{0}}};
+#if RINGS
+    const lanes centre = radial_centre(block->end, &y, first);
+    lanes all = {0};
+#endif
     for (int q = 0; q < side * side; q++) {
         const double g = side == 2 ? FEM_GAUSS_2 : FEM_GAUSS_3, step = side == 2 ? 2 * g : g;
         const int column = q % side, row = q / side;
         const double xi = -g + step * column, eta = -g + step * row;
+#if RINGS /* 2 pi r det J (sigma : G + s_tt N/r): the radius cancels in the second */
+        const double share = side == 2 ? 1 : (column == 1 ? 8.0 / 9 : 5.0 / 9) * (row == 1 ? 8.0 / 9 : 5.0 / 9);
+        const lanes w = share * fem_circumference(radial_at(centre, &y, xi, eta));
+        const lanes hoop = share * fem_circumference(fem_det(serendipity_at(&y, xi, eta)) * lanes_load(block->stress[q][2] + first));
+        all += hoop;
+        s.a[0] += xi * hoop;
+        s.b[0] += eta * hoop;
+        s.h[0] += xi * eta * hoop;
+        s.aa[0] += xi * xi * hoop;
+        s.bb[0] += eta * eta * hoop;
+        s.aab[0] += xi * xi * eta * hoop;
+        s.abb[0] += xi * eta * eta * hoop;
+#else
         const double w = side == 2 ? 1 : (column == 1 ? 8.0 / 9 : 5.0 / 9) * (row == 1 ? 8.0 / 9 : 5.0 / 9);
+#endif
         const fem_jacobian p = fem_pull(w * lanes_load(block->stress[q][0] + first), w * lanes_load(block->stress[q][1] + first),
                                         w * lanes_load(block->stress[q][3] + first), serendipity_at(&y, xi, eta));
         const lanes along[2] = {p.xx, p.yx}, across[2] = {p.xy, p.yy};
@@ -98,21 +149,25 @@ static inline __attribute__((always_inline)) void force(fem_block *block, const 
         lanes_store(block->force[12 + c] + first, vertical - aa);
         lanes_store(block->force[14 + c] + first, -horizontal - bb);
     }
+#if RINGS /* the constant is half the sum of the middles less a quarter of that of the corners */
+    for (int k = 0; k < 8; k++)
+        lanes_store(block->force[2 * k] + first, lanes_load(block->force[2 * k] + first) + (k < 4 ? -0.25 : 0.5) * all);
+#endif
 }
 
-void fem_q8_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
+void NAME(fem_q8_strain)(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
     (void)elastic, (void)f_bar, (void)hourglass;
     for (int first = 0; first < 8; first += LANES) strain(block, 3, first);
 }
-void fem_q8_force(fem_block *block, bool f_bar) {
+void NAME(fem_q8_force)(fem_block *block, bool f_bar) {
     (void)f_bar;
     for (int first = 0; first < 8; first += LANES) force(block, 3, first);
 }
-void fem_q8r_strain(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
+void NAME(fem_q8r_strain)(fem_block *block, const fem_elastic *elastic, bool f_bar, double hourglass) {
     (void)elastic, (void)f_bar, (void)hourglass;
     for (int first = 0; first < 8; first += LANES) strain(block, 2, first);
 }
-void fem_q8r_force(fem_block *block, bool f_bar) {
+void NAME(fem_q8r_force)(fem_block *block, bool f_bar) {
     (void)f_bar;
     for (int first = 0; first < 8; first += LANES) force(block, 2, first);
 }

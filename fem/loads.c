@@ -33,15 +33,15 @@ static face_point point_on(const double *pairs, const uint32_t node[3], double s
     return p;
 }
 
-/* Integrals of the basis functions along a face as it is drawn, m; the two of a linear one are the same to the last bit. */
-static void face_shares(const double *pairs, const uint32_t node[3], double share[3]) {
+/* Integrals of the basis functions along a face as it is drawn, m (of rings over the face, m2); the two of a linear one are the same to the last bit. */
+static void face_shares(const double *pairs, const uint32_t node[3], bool rings, double share[3]) {
     share[0] = share[1] = share[2] = 0.0;
     for (int q = 0; q < PLACES; ++q) {
         const face_point p = point_on(pairs, node, PLACE[q]);
-        const double length = WEIGHT[q] * hypot(p.run[0], p.run[1]);
+        const double length = WEIGHT[q] * hypot(p.run[0], p.run[1]) * (rings ? ab_circumference(p.place[0]) : 1.0);
         for (int k = 0; k < 3; ++k) share[k] += p.n[k] * length;
     }
-    if (node[2] == FEM_NONE) share[0] = share[1] = 0.5 * (share[0] + share[1]);
+    if (node[2] == FEM_NONE && !rings) share[0] = share[1] = 0.5 * (share[0] + share[1]);
 }
 
 static uint32_t nearest_node(const fem_mesh *mesh, const double at[2]) {
@@ -100,7 +100,7 @@ static ab_status spread(fem_body *body, const fem_faces *faces, uint32_t spec, a
         if (!fem_where_face(&load->where, body->mesh, faces, f)) continue;
         fem_load one = {.spec = spec};
         memcpy(one.node, faces->vertex + 3 * f, sizeof one.node);
-        face_shares(body->mesh->x, one.node, one.share);
+        face_shares(body->mesh->x, one.node, body->element->axisymmetric, one.share);
         AB_TRY(add_load(body, &one, report));
     }
     if (body->load_count > before) return AB_OK;
@@ -126,12 +126,13 @@ static ab_status integrate(const fem_body *body, const ab_load_spec *spec, doubl
             const face_point now = point_on(body->x, load->node, PLACE[q]);
             const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
             AB_TRY(ab_number_finite(&spec->pressure, p, time, start.place, report, "loads[%u].pressure", load->spec));
-            per_run[0] = -p * now.run[1], per_run[1] = p * now.run[0]; /* the body is on the left of a face */
+            const double round = body->element->axisymmetric ? ab_circumference(now.place[0]) : 1.0;
+            per_run[0] = -p * now.run[1] * round, per_run[1] = p * now.run[0] * round; /* the body is on the left of a face */
         } else {
             for (int c = 0; c < 2; ++c) {
                 const double t = ab_number_at(spec->traction + c, time, x, y, 0.0);
                 AB_TRY(ab_number_finite(spec->traction + c, t, time, start.place, report, "loads[%u].traction[%d]", load->spec, c));
-                per_run[c] = hypot(start.run[0], start.run[1]) * t;
+                per_run[c] = hypot(start.run[0], start.run[1]) * t * (body->element->axisymmetric ? ab_circumference(x) : 1.0);
             }
         }
         for (int k = 0; k < 3; ++k)

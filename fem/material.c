@@ -13,7 +13,7 @@ ab_status fem_material_create(fem_body *body, ab_report *report) {
     const ab_class *class_ = &body->material->loaded->class_;
     fem_rows rows = {
         .count = FEM_ROW_OTHERS, .gradient = -1, .state = -1, .states = ab_state_count(class_), .turns = ab_state_turns(class_)};
-    if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += 4;
+    if (class_->needs & AB_NEED_DEFORMATION_GRADIENT) rows.gradient = rows.count, rows.count += body->element->axisymmetric ? 5 : 4;
     if (rows.states) rows.state = rows.count, rows.count += rows.states;
     body->rows = rows;
     return AB_OK;
@@ -34,11 +34,12 @@ void fem_batch_open(fem_batch *batch, const fem_body *body, const ab_step *step)
     if (class_->gives & AB_GIVE_DISSIPATION) v->dissipation = batch->dissipation;
     if (body->ask_wave_speed) v->wave_speed = batch->wave_speed;
     if (body->rows.states) v->state0 = batch->state0[0], v->state1 = batch->state1[0];
-    memset(batch->strain[2], 0, sizeof batch->strain[2]); /* plane strain */
+    memset(batch->strain[2], 0, sizeof batch->strain[2]); /* plane strain; rings write theirs */
     memset(batch->flag, 0, sizeof batch->flag);
 }
 
-void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, const fem_block *block, size_t at) {
+static inline __attribute__((always_inline)) void batch_strain(fem_batch *batch, const fem_body *body, size_t number,
+                                                               const fem_block *block, size_t at, const bool rings) {
     const fem_rows rows = body->rows;
     const v8 one = v8_set(1.0);
     for (int q = 0; q < body->element->gauss; ++q, at += 8) {
@@ -46,6 +47,8 @@ void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, con
         const v8 hxx = v8_load(block->h[q][0]), hxy = v8_load(block->h[q][1]), hyx = v8_load(block->h[q][2]), hyy = v8_load(block->h[q][3]);
         ab_increment increment = ab_strain_increment(hxx, hxy, hyx, hyy);
         ab_turn_increment(&increment);
+        const v8 hoop = rings ? v8_load(block->hoop[q]) : v8_set(0.0);
+        if (rings) v8_store(batch->strain[2] + at, ab_hoop_strain(hoop));
         v8_store(batch->strain[0] + at, increment.xx);
         v8_store(batch->strain[1] + at, increment.yy);
         v8_store(batch->strain[3] + at, increment.xy);
@@ -60,7 +63,7 @@ void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, con
             v8 moved[4];
             ab_move_gradient(hxx, hxy, hyx, hyy, point + 8 * rows.gradient, moved);
             for (int c = 0; c < 4; ++c) v8_store(batch->gradient[c] + at, moved[c]);
-            v8_store(batch->gradient[4] + at, one);
+            v8_store(batch->gradient[4] + at, rings ? ab_move_hoop(hoop, point + 8 * (rows.gradient + 4)) : one);
         }
         if (batch->view.velocity_gradient) {
             const v8 rate = v8_set(1.0 / batch->view.dt);
@@ -78,6 +81,13 @@ void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, con
     }
 }
 
+void fem_batch_strain(fem_batch *batch, const fem_body *body, size_t number, const fem_block *block, size_t at) {
+    if (body->element->axisymmetric)
+        batch_strain(batch, body, number, block, at, true);
+    else
+        batch_strain(batch, body, number, block, at, false);
+}
+
 int fem_batch_call(fem_batch *batch, const fem_body *body, size_t count) {
     batch->view.count = count;
     return body->material->loaded->material.update(body->self, &batch->view);
@@ -91,7 +101,8 @@ static v8 real_lanes(const fem_body *body, size_t number) {
     return real;
 }
 
-void fem_batch_settle(const fem_batch *batch, const fem_body *body, size_t number, fem_block *block, size_t at, fem_sums *sums) {
+static inline __attribute__((always_inline)) void batch_settle(const fem_batch *batch, const fem_body *body, size_t number,
+                                                               fem_block *block, size_t at, fem_sums *sums, const bool rings) {
     const fem_rows rows = body->rows;
     const v8 zero = v8_set(0.0);
     v8 work = v8_load(block->control_work), first = v8_load(block->control_first), plastic = zero, travelled = zero, stiffest = zero;
@@ -101,7 +112,7 @@ void fem_batch_settle(const fem_batch *batch, const fem_body *body, size_t numbe
         v8 both = zero, old = zero;
         for (int c = 0; c < 4; ++c) {
             const v8 stress = v8_load(batch->stress[c] + at);
-            if (c != 2) {
+            if (c != 2 || rings) {
                 const v8 strain = v8_load(batch->strain[c] + at), turned = v8_load(batch->turned[c] + at);
                 both += (turned + stress) * strain;
                 old += turned * strain;
@@ -126,4 +137,11 @@ void fem_batch_settle(const fem_batch *batch, const fem_body *body, size_t numbe
     body->stretch[number] += v8_highest(travelled);
     if (batch->view.wave_speed)
         body->stiffening[number] = v8_highest(stiffest) / (body->elastic.density * body->start.wave_speed * body->start.wave_speed);
+}
+
+void fem_batch_settle(const fem_batch *batch, const fem_body *body, size_t number, fem_block *block, size_t at, fem_sums *sums) {
+    if (body->element->axisymmetric)
+        batch_settle(batch, body, number, block, at, sums, true);
+    else
+        batch_settle(batch, body, number, block, at, sums, false);
 }

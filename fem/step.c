@@ -130,6 +130,7 @@ void fem_elements_start(fem_body *body) {
             v8_store(point + 8 * FEM_ROW_MASS, v8_set(body->material->density) * v8_load(block.volume[q]));
             if (rows.gradient >= 0)
                 v8_store(point + 8 * rows.gradient, v8_set(1.0)), v8_store(point + 8 * (rows.gradient + 3), v8_set(1.0));
+            if (rows.gradient >= 0 && element->axisymmetric) v8_store(point + 8 * (rows.gradient + 4), v8_set(1.0));
             for (int s = 0; s < rows.states; ++s) memcpy(point + 8 * (rows.state + s), body->start.state[s], sizeof body->start.state[s]);
         }
         v8_store(body->volume_start + 8 * b, volume);
