@@ -13,16 +13,6 @@ static const double AHEAD = 0.25;  /* of a typical face: the same, beyond what t
 /* Cells that a body may leap in a step and still be seen in time: regions cost its square times the faces. */
 static const double LEAST_LEAP = 4.0, MOST_LEAP = 64.0, LEAP_COST = 2e6;
 
-struct contact_broad {
-    double grid_cell, cell; /* m; grid_cell 0: there is no grid; cell 0: not known yet */
-    double length[2];       /* m, of a typical face of a and of b, no more than a cell */
-    double speed;           /* m/s */
-    double needed[2];       /* m, reach of the last step */
-    double depth;           /* m, by which the bodies overlapped in the last step */
-    bool told;              /* that they are deep in each other */
-    contact_reach reach[2]; /* of the faces of a and of b */
-};
-
 ab_status contact_broad_create(const ab_scene *scene, contact_pair *pair, ab_report *report) {
     pair->broad = calloc(1, sizeof *pair->broad);
     if (!pair->broad)

@@ -32,7 +32,19 @@ typedef struct contact_reach {
     size_t mark_count, mark_capacity;
 } contact_reach;
 
+struct contact_broad {
+    double grid_cell, cell; /* m; grid_cell 0: there is no grid; cell 0: not known yet */
+    double length[2];       /* m, of a typical face of a and of b, no more than a cell */
+    double speed;           /* m/s */
+    double needed[2];       /* m, reach of the last step */
+    double depth;           /* m, by which the bodies overlapped in the last step */
+    bool told;              /* that they are deep in each other */
+    contact_reach reach[2]; /* of the faces of a and of b */
+};
+
 void contact_reach_destroy(contact_reach *);
+/* Room for lists of these lengths as they are kept in a checkpoint; false: no memory. */
+bool contact_reach_reserve(contact_reach *, size_t vertices, size_t tiles, size_t buckets, size_t faces);
 /* Makes region and buckets anew where they no longer serve. cell: of the region, m; length: of a typical face, no more than a cell; needed: the reach wanted now, m.
  * other: bounds of the other body. False: no memory. */
 bool contact_reach_update(contact_reach *, const ab_surface *faces, double cell, double length, double needed, const contact_box *other);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "contact/contact.h"
+#include "core/checkpoint.h"
 
 typedef struct contact_all {
     ab_interaction face; /* first */
@@ -217,21 +218,29 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
     return AB_OK;
 }
 
-/* What the results may write of the points: the impulses are the kinematic stage's from now on. */
-static void show(contact_pair *pair, ab_contact_totals *t) {
-    contact_points *points = &pair->points;
-    const size_t ld = points->view.ld;
+static void point_to_history(const contact_pair *pair, ab_contact_totals *t) {
+    const size_t ld = pair->points.view.ld;
     const double *history = contact_history(pair, true);
     t->normal = history + HISTORY_FORCE * ld;
     t->tangential = history + HISTORY_FRICTION * ld;
     t->slip = history + HISTORY_TANGENTIAL * ld;
+}
+
+static void point_to_pressures(const contact_points *points, ab_contact_totals *t) {
+    if (!points->spread.force) return;
+    t->pressure = points->spread.force + 2 * points->view.ld;
+    t->shear = points->spread.force + 3 * points->view.ld;
+}
+
+/* What the results may write of the points: the impulses are the kinematic stage's from now on. */
+static void show(contact_pair *pair, ab_contact_totals *t) {
+    contact_points *points = &pair->points;
+    point_to_history(pair, t);
     if (!points->spread.wanted) return;
     contact_side side[2];
     contact_sides(pair, side);
     t->peak_pressure = contact_spread_pressure(points, side, t->normal, t->tangential);
-    if (!points->spread.force) return;
-    t->pressure = points->spread.force + 2 * ld;
-    t->shear = points->spread.force + 3 * ld;
+    point_to_pressures(points, t);
 }
 
 static void settle(ab_interaction *face, const ab_step *step) {
@@ -249,6 +258,29 @@ static void book_body(const ab_interaction *face, size_t body, double *friction,
     const contact_all *all = (const contact_all *)face;
     *friction = all->friction[body];
     *contact = all->contact[body];
+}
+
+static void keep(ab_interaction *face, ab_checkpoint *c) {
+    contact_all *all = (contact_all *)face;
+    size_t limit = all->limit_pair ? (size_t)(all->limit_pair - all->pairs) : 0;
+    bool good = ab_keep_long(c, "found_step", &all->found_step) && ab_keep_long(c, "answered_step", &all->answered_step) &&
+                ab_keep_doubles(c, "critical_dt", &all->critical_dt, 1) && ab_keep_size(c, "limit_pair", &limit) &&
+                ab_keep_doubles(c, "limit_stiffness", &all->limit_stiffness, 1) && ab_keep_doubles(c, "limit_mass", &all->limit_mass, 1) &&
+                ab_keep_doubles(c, "friction", all->friction, all->scene->body_count) &&
+                ab_keep_doubles(c, "contact", all->contact, all->scene->body_count);
+    if (good && limit >= all->count) good = ab_checkpoint_refuse(c, "the limit of contact is damaged");
+    if (good) all->limit_pair = all->pairs + limit;
+    for (size_t k = 0; good && k < all->count; ++k) {
+        contact_pair *pair = all->pairs + k;
+        ab_contact_totals *t = all->totals + k;
+        ab_checkpoint_enter(c, "contact[%zu]", k);
+        good = contact_keep_pair(pair, c) && contact_keep_totals(t, c) && contact_keep_spread(&pair->points, c);
+        ab_checkpoint_leave(c);
+        if (!good || !ab_checkpoint_loads(c) || all->found_step < 0) continue;
+        t->list = &pair->points.view;
+        point_to_history(pair, t);
+        if (pair->points.spread.wanted) point_to_pressures(&pair->points, t);
+    }
 }
 
 static void destroy(ab_interaction *face) {
@@ -314,7 +346,7 @@ static bool shows_area(const ab_scene *scene, size_t contact) {
 ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interaction **interaction, ab_report *report) {
     contact_all *all = calloc(1, sizeof *all);
     if (!all) return ab_report_failure(report, "no memory for the contacts");
-    all->face = (ab_interaction){destroy, solve, settle, totals, book_body, critical_dt};
+    all->face = (ab_interaction){destroy, solve, settle, totals, book_body, critical_dt, keep};
     all->scene = scene;
     all->found_step = all->answered_step = -1;
     all->critical_dt = INFINITY;

@@ -147,6 +147,12 @@ bool contact_share_sums(contact_points *); /* into state0, from the states of th
 void contact_sums_destroy(contact_sums *);
 bool contact_carried_areas(contact_points *); /* into carried, of shared nodes, once impulses stand: m, sum kept but for what nobody near carries; false: no memory */
 
+/* keep.c: checkpoints. False: refused */
+struct ab_checkpoint;
+bool contact_keep_pair(contact_pair *, struct ab_checkpoint *);
+bool contact_keep_totals(ab_contact_totals *, struct ab_checkpoint *);
+bool contact_keep_spread(contact_points *, struct ab_checkpoint *);
+
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */
 void contact_points_destroy(contact_points *);

@@ -36,6 +36,13 @@ static bool room2(void *first, void *second, size_t *capacity, size_t wanted, si
     return room(first, &once, wanted, size) && room(second, capacity, wanted, size);
 }
 
+bool contact_reach_reserve(contact_reach *r, size_t vertices, size_t tiles, size_t buckets, size_t faces) {
+    return room(&r->vertex, &r->vertex_capacity, 2 * vertices + 1, sizeof *r->vertex) &&
+           room2(&r->tile_key, &r->tile_cells, &r->tile_capacity, tiles + 1, sizeof *r->tile_key) &&
+           room2(&r->bucket_key, &r->bucket_start, &r->bucket_capacity, buckets + 2, sizeof *r->bucket_key) &&
+           room(&r->bucket_face, &r->bucket_face_capacity, faces + 1, sizeof *r->bucket_face);
+}
+
 /* ---- faces ----------------------------------------------------------------------------------------------------------------- */
 
 /* The chord of a face, and how far the face leaves it: a quadratic one runs at (1 - xi^2) times the offset of its middle. */

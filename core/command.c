@@ -30,14 +30,16 @@ static int command_help(const ab_command_line *line);
 
 static const ab_command commands[] = {
     {"run", "SCENE", "run a scene; results.h5, results.xdmf, history.csv and summary.json land in the results folder",
-     "Progress goes to standard error: a bar on a terminal, plain lines elsewhere. Results that are there already are replaced.\n"
+     "Progress goes to standard error: a bar on a terminal, plain lines elsewhere. Results that are there already are replaced,\n"
+     "but with --restart gone on with from the checkpoint.\n"
      "  abut run cases/block_on_incline/scene.yaml -o results/incline --set constants.mu=0.3",
-     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_STRICT, 1, 1,
-     ab_command_run},
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_QUIET |
+         AB_OPTION_STRICT | AB_OPTION_RESTART,
+     1, 1, ab_command_run},
     {"check", "SCENE", "read a scene, load its plugins, say all that is wrong; nothing runs, nothing is written", NULL,
-     AB_OPTION_SET | AB_OPTION_PLUGIN_PATH, 1, 1, ab_command_check},
+     AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS, 1, 1, ab_command_check},
     {"plan", "SCENE", "what this scene needs, and what it will not pay for: points, memory, passes, plugins, steps, time", NULL,
-     AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_JSON, 1, 1, ab_command_plan},
+     AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_JSON, 1, 1, ab_command_plan},
     {"trade", "SCENE", "accuracy against cost: run a scene with several settings, and set its errors beside its cost",
      "The settings are those of the scene's `trade` (abut help scene), or given by --vary; every combination is run, each in a process of "
      "its own. What was run "
@@ -146,6 +148,7 @@ ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, 
     *scene = NULL;
     *registry = NULL;
     ab_status status = ab_registry_create(line->plugin_path, registry, report);
+    if (status == AB_OK && line->force_plugins) ab_registry_force(*registry);
     if (status == AB_OK) status = ab_scene_read(line->words[0], line->overrides, line->override_count, *registry, scene, report);
     if (status == AB_OK) return AB_OK;
     ab_report_print(report, stderr);

@@ -24,6 +24,8 @@ static const option_text option_texts[] = {
      "threads to run on (default: all cores, fewer for a small scene); results do not depend on it"},
     {AB_OPTION_SET, "set", 0, "PATH=VALUE", "put VALUE in the scene at PATH, such as contact[0].friction=0.3; may be repeated"},
     {AB_OPTION_PLUGIN_PATH, "plugin-path", 0, "FOLDERS", "look for plugins here first; folders separated by ':'"},
+    {AB_OPTION_FORCE_PLUGINS, "force-plugins", 0, NULL, "load plugins from files and folders that other users can write to"},
+    {AB_OPTION_RESTART, "restart", 0, "FILE", "go on from a checkpoint, such as DIR/checkpoint.abut; with -o DIR in the same results"},
     {AB_OPTION_QUIET, "quiet", 'q', NULL, "no progress and no closing table"},
     {AB_OPTION_STRICT, "strict", 0, NULL, "exit 3 when an expect of the scene is missed (extremes: when a quantity does not hold)"},
     {AB_OPTION_JSON, "json", 0, NULL, "print JSON"},
@@ -55,7 +57,7 @@ static void print_options(unsigned options, FILE *stream) {
 
 static void print_exit_codes(FILE *stream) {
     fprintf(stream, "\nExit status: 0 done; 1 the run failed; 2 the input is wrong; 3 an expect was missed with --strict;\n"
-                    "130, 143 stopped by a signal.\n");
+                    "130, 143 stopped by a signal, checkpoint written.\n");
 }
 
 void ab_command_help(const ab_command *commands, const ab_command *command, FILE *stream) {
@@ -163,6 +165,11 @@ static int read_option(const ab_command *command, const option_text *option, cha
         line->write = value;
         return AB_OK;
     case AB_OPTION_PLUGIN_PATH: line->plugin_path = value; return AB_OK;
+    case AB_OPTION_FORCE_PLUGINS: line->force_plugins = true; return AB_OK;
+    case AB_OPTION_RESTART:
+        if (!value[0]) return wrong(command, "%s wants the name of a checkpoint", "--restart", "");
+        line->restart = value;
+        return AB_OK;
     case AB_OPTION_QUIET: line->quiet = true; return AB_OK;
     case AB_OPTION_STRICT: line->strict = true; return AB_OK;
     default: line->json = true; return AB_OK;

@@ -36,6 +36,7 @@ static int with_scene(const ab_command_line *line,
         char folder[PATH_MAX + 16];
         ab_command_folder(line->words[0], folder, sizeof folder);
         const ab_run_options options = {.folder = line->output ? line->output : folder,
+                                        .restart = line->restart,
                                         .threads = line->threads ? line->threads : omp_get_max_threads(),
                                         .quiet = line->quiet,
                                         .strict = line->strict,

@@ -18,7 +18,9 @@ enum ab_option_bits { /* options a command takes */
                       AB_OPTION_JOBS = 1024u,
                       AB_OPTION_WRITE = 2048u,
                       AB_OPTION_LIMIT = 4096u,
-                      AB_OPTION_MAP = 8192u
+                      AB_OPTION_MAP = 8192u,
+                      AB_OPTION_RESTART = 1u << 16,
+                      AB_OPTION_FORCE_PLUGINS = 1u << 17
 };
 
 /* A command line once it is understood. Texts are borrowed from argv. */
@@ -26,6 +28,8 @@ typedef struct ab_command_line {
     const char *output;      /* -o; NULL: not given */
     int threads;             /* -j; 0: not given */
     const char *plugin_path; /* --plugin-path; NULL: not given */
+    const char *restart;     /* --restart FILE; NULL: not given */
+    bool force_plugins;      /* those that others can write to are loaded too */
     bool quiet, strict, json;
     ab_override *overrides; /* --set, in order */
     size_t override_count;

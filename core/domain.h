@@ -8,6 +8,8 @@
 
 #include "core/scene.h"
 
+struct ab_checkpoint;
+
 typedef struct ab_domain ab_domain;
 
 typedef struct ab_step { /* one time step, the same for every domain */
@@ -135,6 +137,8 @@ typedef struct ab_domain_ops {
     ab_status (*read)(const ab_domain *, const char *field, double *values,
                       ab_report *); /* values[i*components + c], i in order of id; "id" gives ids */
     void (*plan)(const ab_domain *, ab_plan_body *);
+    /* Between two steps: saves all that the next one needs and creation does not give, or brings it back into a body just created. See core/checkpoint.h. */
+    void (*keep)(ab_domain *, struct ab_checkpoint *);
 } ab_domain_ops;
 
 struct ab_domain { /* first member of each method's own struct */

@@ -53,7 +53,8 @@ ab_status ab_file_replace(const char *path, const void *bytes, size_t count, ab_
     char *beside = malloc(strlen(path) + 6);
     if (beside == NULL) return ab_report_failure(report, "no memory to write '%s'", path);
     sprintf(beside, "%s.part", path);
-    const int file = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    unlink(beside); /* of a run that was killed; or a link, which may lead out of the folder */
+    const int file = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
     int failed = file < 0 ? errno : write_all(file, bytes, count);
     if (file >= 0 && close(file) != 0 && failed == 0) failed = errno; /* a network disk reports a full disk here */
     if (failed == 0 && rename(beside, path) != 0) failed = errno;

@@ -20,6 +20,11 @@ typedef struct ab_frames ab_frames;
 ab_status ab_frames_create(const ab_scene *scene, ab_domain *const *domains, ab_frames **frames, ab_report *report);
 /* Clears frames of an earlier run in this folder (which exists). */
 ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *report);
+/* For checkpoints: which frames there are. frames NULL: none are written. */
+void ab_frames_keep(ab_frames *frames, struct ab_checkpoint *checkpoint);
+/* Goes on in a folder: `there`, its frames are those before the checkpoint, and later ones go; else it has none of them, and numbers go on. AB_BAD_INPUT: some are
+ * not there, or have other fields. */
+ab_status ab_frames_continue(ab_frames *frames, const char *folder, bool there, ab_report *report);
 /* contacts: of the last step, contact_count; looked at where the scene writes contact points. */
 ab_status ab_frames_write(ab_frames *frames, const ab_contact_totals *contacts, double time, long step, ab_report *report);
 /* Gathers the frames into one self-contained results.h5. Where there is no room for that the linked form stays, with a warning. */
@@ -49,6 +54,7 @@ typedef struct ab_xdmf_grid {     /* /frame/group of results.h5 */
 ab_status ab_xdmf_create(const char *path, const char *title, ab_xdmf **xdmf, ab_report *report);
 /* Adds a grid and writes the file anew, in one piece. */
 ab_status ab_xdmf_add(ab_xdmf *xdmf, const ab_xdmf_grid *grid, const ab_xdmf_field *fields, size_t field_count, ab_report *report);
+void ab_xdmf_hold(ab_xdmf *xdmf, bool held); /* held: grids are added, and nothing is written */
 ab_status ab_xdmf_finish(ab_xdmf *xdmf, ab_report *report); /* writes what a very long series has held back */
 void ab_xdmf_destroy(ab_xdmf *xdmf);
 

@@ -22,6 +22,7 @@ typedef struct frame_record {
     size_t total;
     size_t *cells;    /* elements per body; 0: a cloud of points */
     size_t *topology; /* per body, and of the cloud last: the frame that holds `vertices` or `connectivity` for this number of them */
+    size_t *contacts; /* points per contact, where they are written */
     double time;
     long step;
     off_t bytes;
@@ -36,6 +37,8 @@ struct ab_frames {
     char *folder, *frame_folder, *path; /* DIR, DIR/frames, DIR/results.h5 */
     frame_record *records;
     size_t count, capacity;
+    size_t first; /* those before it lie in another folder: the run went on from a checkpoint there */
+    char *kept_columns; /* of a run that goes on: those of the frames before */
     double *values, *rows; /* as a body gives them; as the file has them */
     size_t value_capacity, row_capacity;
     ab_xdmf *cloud, **of_body; /* of_body[b]: NULL where body b is all there is, and is a cloud */
@@ -70,6 +73,11 @@ int ab_frames_cloud(ab_frames *frames, size_t number, const char *frame, hid_t p
 /* Removes the frames of an earlier run, complete or not. Files of other names stay. */
 void ab_frames_clear(const char *path);
 
+/* The paths in a folder, and results.xdmf without grids. */
+ab_status ab_frames_open(ab_frames *frames, const char *folder, ab_report *report);
+frame_record *ab_frames_record(ab_frames *frames); /* a new one at the end, not counted yet; NULL: no memory */
+ab_status ab_frames_xdmf(ab_frames *frames, size_t number, ab_report *report);
+
 /* ---- results_contacts.c: nothing is done unless contact points are asked for ---- */
 
 enum { CONTACT_NAME = 32 };
@@ -78,12 +86,14 @@ ab_status ab_frames_contacts_check(const ab_frames *frames, ab_report *report);
 ab_status ab_frames_contacts_begin(ab_frames *frames, ab_report *report);
 /* Puts the groups of one frame into it. */
 ab_status ab_frames_contacts_fill(ab_frames *frames, const ab_contact_totals *contacts, hid_t frame, ab_report *report);
-ab_status ab_frames_contacts_xdmf(ab_frames *frames, const ab_contact_totals *contacts, size_t number, ab_report *report);
+ab_status ab_frames_contacts_xdmf(ab_frames *frames, size_t number, ab_report *report);
 ab_status ab_frames_contacts_finish(ab_frames *frames, ab_report *report);
 void ab_frames_contacts_destroy(ab_frames *frames);
 
 /* ---- results_gather.c ---- */
 
 ab_status ab_frames_link(const ab_frames *frames, ab_report *report);
+/* A frame from one file into another. */
+int ab_frames_copy(ab_frames *frames, size_t number, hid_t from, hid_t into);
 
 #endif

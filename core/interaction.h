@@ -22,6 +22,8 @@ struct ab_interaction { /* first member of the maker's own struct */
     void (*book)(const ab_interaction *, size_t body, double *friction, double *contact);
     /* dt, s, at which a spring of contact is neutrally stable (responses that act as one); INFINITY without. As of the last step. */
     double (*critical_dt)(const ab_interaction *, const char **limit);
+    /* As of a domain: core/checkpoint.h. */
+    void (*keep)(ab_interaction *, struct ab_checkpoint *);
 };
 
 /* Only called for scenes with contacts. */

@@ -34,6 +34,7 @@ struct ab_registry {
     size_t candidate_count;
     ab_loaded_class **classes; /* in order of kind, name */
     size_t class_count;
+    bool forced; /* who can write to a plugin is not looked at */
 };
 
 /* ---- the search path --------------------------------------------------------------------------------------------------------------- */
@@ -181,6 +182,8 @@ ab_status ab_registry_create(const char *paths, ab_registry **registry, ab_repor
     return AB_OK;
 }
 
+void ab_registry_force(ab_registry *registry) { registry->forced = true; }
+
 void ab_registry_destroy(ab_registry *registry) {
     if (!registry) return;
     for (size_t i = 0; i < registry->class_count; i++) free(registry->classes[i]);
@@ -252,7 +255,8 @@ static bool add_classes(ab_registry *registry, candidate *from) {
 static ab_status open_candidate(ab_registry *registry, candidate *from, ab_mark mark, ab_report *report) {
     if (!from->opened) {
         from->opened = true;
-        from->refused = !ab_plugin_load(from->path, &from->file, &from->refusal) || !add_classes(registry, from);
+        from->refused = (!registry->forced && !ab_plugin_is_safe(from->path, &from->refusal)) ||
+                        !ab_plugin_load(from->path, &from->file, &from->refusal) || !add_classes(registry, from);
     }
     return from->refused ? ab_report_error(report, mark, "plugin %s %s", from->path, from->refusal.text) : AB_OK;
 }

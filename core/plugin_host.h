@@ -30,6 +30,8 @@ typedef struct ab_loaded_class {
  * Strict: two files among those opened that offer the same class are an error that names both (the same file met twice is one), and so is any
  * opened file that is refused. Empty entries of a search path are passed over, so the working directory is searched only where it is named. */
 ab_status ab_registry_create(const char *paths, ab_registry **registry, ab_report *report);
+/* From now on files and folders that other users can write to are no reason to refuse a plugin. */
+void ab_registry_force(ab_registry *registry);
 void ab_registry_destroy(ab_registry *registry);
 
 /* The class of that kind and name, loading what it takes. NULL with an error in the report: at `mark`, naming paths tried, nearest names. */

@@ -12,6 +12,8 @@ typedef struct ab_plugin_file {
 
 /* Checks the file, loads it, checks what it brought. `path` is absolute. False with the reason; nothing is then left loaded. */
 bool ab_plugin_load(const char *path, ab_plugin_file *file, ab_refusal *refusal);
+/* plugin_safe.c: false with the reason where another user could change the file or a folder on the way to it. */
+bool ab_plugin_is_safe(const char *path, ab_refusal *refusal);
 void ab_plugin_unload(ab_plugin_file *file);
 
 #endif

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/checkpoint.h"
 #include "core/files.h"
 #include "core/results_inner.h"
 
@@ -51,9 +52,9 @@ static ab_status find_all(ab_results *results, const ab_state_view *view, ab_rep
 }
 
 /* What an earlier run left under names that this one will write, or not. */
-static ab_status clear(const ab_results *results, ab_report *report) {
-    static const char *const names[] = {"summary.json", "results.h5", "results.xdmf"};
-    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+ab_status ab_results_clear(const ab_results *results, bool checkpoints, ab_report *report) {
+    static const char *const names[] = {"summary.json", "results.h5", "results.xdmf", AB_CHECKPOINT_NAME, AB_CHECKPOINT_PREVIOUS};
+    for (size_t k = 0; k < (checkpoints ? sizeof names / sizeof *names : 3); k++) {
         char *path = ab_path_join(results->folder, names[k]);
         if (path == NULL) return ab_report_failure(report, "no memory for results");
         unlink(path);
@@ -75,7 +76,7 @@ ab_status ab_results_check(const ab_scene *scene, const ab_state_view *view, ab_
     return status;
 }
 
-ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **result, ab_report *report) {
+ab_status ab_results_create(const char *folder, const ab_scene *scene, const ab_state_view *start, ab_results **result, ab_report *report) {
     ab_results *results = calloc(1, sizeof *results);
     *result = NULL;
     if (results == NULL || (results->folder = strdup(folder)) == NULL) {
@@ -84,17 +85,29 @@ ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_st
     }
     results->scene = scene;
     results->frame_step = -1;
-    ab_status status = find_all(results, view, report);
-    if (status == AB_OK) status = ab_folder_make(folder, report);
-    if (status == AB_OK) status = clear(results, report);
-    if (status == AB_OK) status = ab_history_create(folder, scene, &results->history, report);
-    if (status == AB_OK && results->frames != NULL) status = ab_frames_begin(results->frames, folder, report);
-    if (status != AB_OK) {
+    const ab_status status = find_all(results, start, report);
+    if (status != AB_OK)
         ab_results_destroy(results);
-        return status;
-    }
-    *result = results;
-    return AB_OK;
+    else
+        *result = results;
+    return status;
+}
+
+ab_status ab_results_begin(ab_results *results, ab_report *report) {
+    AB_TRY(ab_folder_make(results->folder, report));
+    AB_TRY(ab_history_is_free(results->folder, report));
+    AB_TRY(ab_results_clear(results, true, report));
+    AB_TRY(ab_history_create(results->folder, results->scene, &results->history, report));
+    return results->frames != NULL ? ab_frames_begin(results->frames, results->folder, report) : AB_OK;
+}
+
+ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **result, ab_report *report) {
+    AB_TRY(ab_results_create(folder, scene, view, result, report));
+    const ab_status status = ab_results_begin(*result, report);
+    if (status == AB_OK) return AB_OK;
+    ab_results_destroy(*result);
+    *result = NULL;
+    return status;
 }
 
 double ab_results_moved(const ab_results *results, const ab_state_view *view) {

@@ -43,6 +43,13 @@ typedef struct ab_results ab_results;
 ab_status ab_results_check(const ab_scene *scene, const ab_state_view *view, ab_report *report);
 /* Makes the folder and files. Nothing is written when anything is wrong. */
 ab_status ab_results_open(const char *folder, const ab_scene *scene, const ab_state_view *view, ab_results **results, ab_report *report);
+/* The two halves of opening: looks for everything in the state of the start; makes the folder and files. */
+ab_status ab_results_create(const char *folder, const ab_scene *scene, const ab_state_view *start, ab_results **results, ab_report *report);
+ab_status ab_results_begin(ab_results *results, ab_report *report);
+/* For checkpoints, after a step: how far files and expects are. Loading: between create and continue. */
+void ab_results_keep(ab_results *results, struct ab_checkpoint *checkpoint);
+/* Goes on with the files of the folder from where they were at the checkpoint. In a folder without history.csv new ones are made, that begin there. */
+ab_status ab_results_continue(ab_results *results, ab_report *report);
 /* After every step (and once before the first): history row when due, monitors and expects always, a frame when due. */
 ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report);
 /* A frame now, whatever is due (the end, a failure). */

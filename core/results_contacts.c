@@ -97,9 +97,9 @@ ab_status ab_frames_contacts_fill(ab_frames *frames, const ab_contact_totals *co
     return AB_OK;
 }
 
-ab_status ab_frames_contacts_xdmf(ab_frames *frames, const ab_contact_totals *contacts, size_t number, ab_report *report) {
+ab_status ab_frames_contacts_xdmf(ab_frames *frames, size_t number, ab_report *report) {
     for (size_t k = 0; frames->of_contact != NULL && k < frames->scene->contact_count; k++) {
-        if (count_of(&contacts[k]) == 0) continue; /* readers stumble over grids without points */
+        if (frames->records[number].contacts[k] == 0) continue; /* readers stumble over grids without points */
         char name[CONTACT_NAME];
         ab_frames_contact_name(k, name);
         ab_xdmf_field fields[QUANTITIES];
@@ -108,7 +108,7 @@ ab_status ab_frames_contacts_xdmf(ab_frames *frames, const ab_contact_totals *co
                                    .topology_frame = number,
                                    .group = name,
                                    .time = frames->records[number].time,
-                                   .points = count_of(&contacts[k])};
+                                   .points = frames->records[number].contacts[k]};
         AB_TRY(ab_xdmf_add(frames->of_contact[k], &grid, fields, QUANTITIES, report));
     }
     return AB_OK;

@@ -16,7 +16,7 @@ ab_status ab_frames_link(const ab_frames *frames, ab_report *report) {
     const hid_t file = ab_hdf5_create();
     if (file < 0) return ab_hdf5_trouble("build the list of frames", report);
     ab_status status = AB_OK;
-    for (size_t k = 0; k < frames->count && status == AB_OK; k++) {
+    for (size_t k = frames->first; k < frames->count && status == AB_OK; k++) {
         char name[32], target[48];
         snprintf(name, sizeof name, "frame_%06zu", k);
         snprintf(target, sizeof target, "frames/%s.h5", name);
@@ -39,14 +39,9 @@ static bool reserve(const char *path, off_t bytes) {
     return done;
 }
 
-static int gather_frame(ab_frames *frames, size_t number, hid_t into) {
+int ab_frames_copy(ab_frames *frames, size_t number, hid_t from, hid_t into) {
     char name[32];
     snprintf(name, sizeof name, "frame_%06zu", number);
-    char *path = ab_frames_path(frames, number);
-    if (path == NULL) return -1;
-    const hid_t from = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    free(path);
-    if (from < 0) return -1;
     const hid_t source = H5Gopen2(from, name, H5P_DEFAULT), target = ab_frames_group(&frames->records[number], name, into);
     int result = source < 0 || target < 0 ? -1 : 0;
     for (size_t b = 0; b < frames->bodies && result >= 0; b++) {
@@ -61,6 +56,16 @@ static int gather_frame(ab_frames *frames, size_t number, hid_t into) {
     if (result >= 0) result = ab_frames_cloud(frames, number, name, target);
     if (source >= 0) H5Gclose(source);
     if (target >= 0) H5Gclose(target);
+    return result;
+}
+
+static int gather_frame(ab_frames *frames, size_t number, hid_t into) {
+    char *path = ab_frames_path(frames, number);
+    if (path == NULL) return -1;
+    const hid_t from = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    free(path);
+    if (from < 0) return -1;
+    const int result = ab_frames_copy(frames, number, from, into);
     H5Fclose(from);
     return result;
 }
@@ -73,7 +78,7 @@ static int gather(ab_frames *frames, const char *path, off_t bytes, ab_report *r
     if (empty != AB_OK || !reserve(path, bytes)) return -1;
     if ((file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT)) < 0) return -1;
     int result = 0;
-    for (size_t k = 0; k < frames->count && result >= 0; k++) result = gather_frame(frames, k, file);
+    for (size_t k = frames->first; k < frames->count && result >= 0; k++) result = gather_frame(frames, k, file);
     if (H5Fclose(file) < 0) return -1;
     struct stat found;
     if (stat(path, &found) != 0 || truncate(path, found.st_size) != 0) return -1; /* gives back what was set aside and not needed */
@@ -85,12 +90,12 @@ ab_status ab_frames_finish(ab_frames *frames, ab_report *report) {
     for (size_t b = 0; frames->of_body != NULL && b < frames->bodies; b++)
         if (frames->of_body[b] != NULL) AB_TRY(ab_xdmf_finish(frames->of_body[b], report));
     AB_TRY(ab_frames_contacts_finish(frames, report));
-    if (frames->count == 0) {
+    if (frames->count == frames->first) {
         rmdir(frames->frame_folder);
         return AB_OK;
     }
     off_t bytes = 1 << 20;
-    for (size_t k = 0; k < frames->count; k++) bytes += frames->records[k].bytes + 65536;
+    for (size_t k = frames->first; k < frames->count; k++) bytes += frames->records[k].bytes + 65536;
     char *beside = malloc(strlen(frames->path) + 6);
     if (beside == NULL) return ab_report_failure(report, "no memory to gather the frames");
     sprintf(beside, "%s.part", frames->path);

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/files.h"
@@ -140,16 +141,30 @@ static ab_status xdmf_open(ab_frames *frames, ab_report *report) {
     return status;
 }
 
-ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *report) {
+/* A folder of ours, and no link to another one. */
+static ab_status frame_folder_make(const ab_frames *frames, ab_report *report) {
+    struct stat found;
+    if (lstat(frames->frame_folder, &found) == 0 && S_ISLNK(found.st_mode))
+        return ab_report_failure(report, "'%s' is a link to another place, where nothing is to be written; remove it",
+                                 frames->frame_folder);
+    return ab_folder_make(frames->frame_folder, report);
+}
+
+ab_status ab_frames_open(ab_frames *frames, const char *folder, ab_report *report) {
     frames->folder = ab_path_join(folder, "");
     frames->frame_folder = ab_path_join(folder, "frames");
     frames->path = ab_path_join(folder, "results.h5");
     if (frames->folder == NULL || frames->frame_folder == NULL || frames->path == NULL)
         return ab_report_failure(report, "no memory for the output");
-    AB_TRY(ab_folder_make(frames->frame_folder, report));
-    ab_frames_clear(frames->frame_folder);
+    AB_TRY(frame_folder_make(frames, report));
     AB_TRY(xdmf_open(frames, report));
     return ab_frames_contacts_begin(frames, report);
+}
+
+ab_status ab_frames_begin(ab_frames *frames, const char *folder, ab_report *report) {
+    AB_TRY(ab_frames_open(frames, folder, report));
+    ab_frames_clear(frames->frame_folder);
+    return AB_OK;
 }
 
 static hid_t stored_type(const column *c) { return c->integer ? H5T_STD_I64LE : H5T_IEEE_F64LE; }
@@ -280,7 +295,7 @@ static ab_status frame_fill(ab_frames *frames, const ab_contact_totals *contacts
     return status;
 }
 
-static frame_record *record_new(ab_frames *frames) {
+frame_record *ab_frames_record(ab_frames *frames) {
     if (frames->count == frames->capacity) {
         const size_t capacity = frames->capacity == 0 ? 64 : 2 * frames->capacity;
         frame_record *records = realloc(frames->records, capacity * sizeof *records);
@@ -290,14 +305,15 @@ static frame_record *record_new(ab_frames *frames) {
     }
     frame_record *record = &frames->records[frames->count];
     *record = (frame_record){0};
-    record->points = calloc(3 * frames->bodies + 1, sizeof *record->points);
+    record->points = calloc(3 * frames->bodies + 1 + frames->scene->contact_count, sizeof *record->points);
     if (record->points == NULL) return NULL;
     record->cells = record->points + frames->bodies;
     record->topology = record->cells + frames->bodies;
+    record->contacts = record->topology + frames->bodies + 1;
     return record;
 }
 
-static ab_status xdmf_add(ab_frames *frames, size_t number, ab_report *report) {
+ab_status ab_frames_xdmf(ab_frames *frames, size_t number, ab_report *report) {
     const frame_record *record = &frames->records[number];
     ab_xdmf_field fields[MOST_FIELDS];
     for (size_t b = 0; b <= frames->bodies; b++) {
@@ -322,17 +338,19 @@ static ab_status xdmf_add(ab_frames *frames, size_t number, ab_report *report) {
 
 ab_status ab_frames_write(ab_frames *frames, const ab_contact_totals *contacts, double time, long step, ab_report *report) {
     const size_t number = frames->count;
-    frame_record *record = record_new(frames);
+    frame_record *record = ab_frames_record(frames);
     if (record == NULL) return ab_report_failure(report, "no memory for frame %zu", number);
     record->time = time;
     record->step = step;
-    const frame_record *before = number > 0 ? &frames->records[number - 1] : NULL;
+    const frame_record *before = number > frames->first ? &frames->records[number - 1] : NULL;
     for (size_t b = 0; b < frames->bodies; b++) {
         record->total += record->points[b] = frames->domains[b]->ops->count(frames->domains[b]);
         record->cells[b] = cells_of(frames->domains[b]).count;
         const bool same = before && before->points[b] == record->points[b] && before->cells[b] == record->cells[b];
         record->topology[b] = same ? before->topology[b] : number;
     }
+    for (size_t k = 0; frames->scene->output_contact && k < frames->scene->contact_count; k++)
+        record->contacts[k] = contacts[k].list != NULL ? contacts[k].list->count : 0;
     record->topology[frames->bodies] = before && before->total == record->total ? before->topology[frames->bodies] : number;
     if (record->total > INT32_MAX)
         return ab_report_failure(report, "a frame of %zu points is more than the result files can number", record->total);
@@ -355,11 +373,11 @@ ab_status ab_frames_write(ab_frames *frames, const ab_contact_totals *contacts, 
     H5E_END_TRY
     free(path);
     if (status != AB_OK && frames->count == number) free(record->points);
-    if (status == AB_OK) status = xdmf_add(frames, number, report);
-    return status == AB_OK ? ab_frames_contacts_xdmf(frames, contacts, number, report) : status;
+    if (status == AB_OK) status = ab_frames_xdmf(frames, number, report);
+    return status == AB_OK ? ab_frames_contacts_xdmf(frames, number, report) : status;
 }
 
-size_t ab_frames_count(const ab_frames *frames) { return frames == NULL ? 0 : frames->count; }
+size_t ab_frames_count(const ab_frames *frames) { return frames == NULL ? 0 : frames->count - frames->first; }
 
 void ab_frames_destroy(ab_frames *frames) {
     if (frames == NULL) return;
@@ -375,5 +393,6 @@ void ab_frames_destroy(ab_frames *frames) {
     free(frames->folder);
     free(frames->frame_folder);
     free(frames->path);
+    free(frames->kept_columns);
     free(frames);
 }

@@ -16,6 +16,7 @@ struct ab_xdmf {
     char *path, *title;
     ab_text text;      /* head and grids, without the closing tags */
     double cost, last; /* s: what the last writing took, and when it was */
+    bool held;
     bool behind;       /* the file lacks grids that the text has */
 };
 
@@ -94,9 +95,12 @@ ab_status ab_xdmf_add(ab_xdmf *xdmf, const ab_xdmf_grid *grid, const ab_xdmf_fie
     /* The whole text is written for every frame. A series of many thousand frames would pay more for that than for its frames, so beyond 4 MB
      * writing is held to a twentieth of the time; the frames themselves are in results.h5 at once. */
     xdmf->behind = true;
+    if (xdmf->held) return AB_OK;
     if (xdmf->text.count > ((size_t)4 << 20) && now() - xdmf->last < 20 * xdmf->cost) return AB_OK;
     return put(xdmf, report);
 }
+
+void ab_xdmf_hold(ab_xdmf *xdmf, bool held) { xdmf->held = held; }
 
 ab_status ab_xdmf_finish(ab_xdmf *xdmf, ab_report *report) { return xdmf->behind ? put(xdmf, report) : AB_OK; }
 

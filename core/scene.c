@@ -35,6 +35,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_monitors(r, v[TOP_MONITORS]);
     ab_scene_take_history(r, v[TOP_HISTORY]);
     ab_scene_take_output(r, v[TOP_OUTPUT]);
+    ab_scene_take_checkpoint(r, v[TOP_CHECKPOINT]);
     ab_scene_take_expects(r, v[TOP_EXPECT]);
     ab_scene_take_trade(r, v[TOP_TRADE]);
     ab_scene_take_extremes(r, v[TOP_EXTREMES]);

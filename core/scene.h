@@ -254,6 +254,9 @@ typedef struct ab_scene {
     size_t output_field_count;
     bool output_contact; /* contact points too */
     bool has_output, has_history;
+    bool has_checkpoint;
+    double checkpoint_every, checkpoint_wall; /* s of the scene's time, s of wall time; 0: not by that */
+    long checkpoint_steps;                    /* 0: not by steps */
     ab_trade_spec trade;
     ab_extremes_spec extremes;
     struct ab_scene_private *private_; /* document, parsers, arena */

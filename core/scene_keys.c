@@ -35,7 +35,7 @@ static const ab_key top[] = {
     [TOP_EXPECT] = {"expect", AB_KEY_SECTION, .help = "list of answers that must come out"},
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
-    [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_LATER, .help = "leave the key out"},
+    [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_SECTION, .help = "when the state of the run is saved, to go on from"},
     [TOP_CHECKED] = {"checked", AB_KEY_FLAG, .initial = "false",
                      .help = "watch every call of every plugin: arrays that end where memory ends, old state read only, finite numbers, losses not "
                              "negative, weights that sum to 1; a broken promise ends the run. Same results, slower; for plugins under development"},
@@ -394,6 +394,20 @@ SECTION(watchdog, "watchdog", watchdog, NULL,
         "A run that goes on making energy has no result; it is ended, with the body, the place, the likely cause and the remedy.",
         "watchdog: {energy: 0.1}\n");
 
+static const ab_key checkpoint[] = {
+    [CHECKPOINT_EVERY] = {"every", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "time between checkpoints"},
+    [CHECKPOINT_STEPS] = {"steps", AB_KEY_INTEGER, .flags = AB_KEY_RANGE, .min = 1, .max = INFINITY, .unit = "1",
+                          .help = "steps between checkpoints"},
+    [CHECKPOINT_WALL] = {"wall", AB_KEY_NUMBER, .unit = "min", POSITIVE,
+                         .help = "minutes on the clock between checkpoints; a bare number is minutes, others have their unit (\"2 h\")"},
+};
+SECTION(checkpoint, "checkpoint", checkpoint, NULL,
+        "One of them or more; and one at the end. `checkpoint.abut` lies in the folder of the results, the one before it beside it; `abut "
+        "run SCENE --restart FILE` "
+        "goes on from it, to the same last bit as if it had never stopped (docs/runs.md). A run that is stopped by a signal leaves one in "
+        "any case.",
+        "checkpoint: {every: 0.5, wall: 30}\n");
+
 static const ab_key trade[] = {
     [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders; every combination is run"},
     [TRADE_ERROR] = {"error", AB_KEY_SECTION,
@@ -469,4 +483,5 @@ const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_dampi
                                          &ab_section_arc,      &ab_section_fix,      &ab_section_motion,  &ab_section_contact,
                                          &ab_section_load,     &ab_section_where,    &ab_section_monitor, &ab_section_history,
                                          &ab_section_output,   &ab_section_expect,   &ab_section_trade,   &ab_section_ladder,
-                                         &ab_section_watchdog, &ab_section_extremes, &ab_section_extreme, NULL};
+                                         &ab_section_watchdog, &ab_section_extremes, &ab_section_extreme,
+                                         &ab_section_checkpoint, NULL};

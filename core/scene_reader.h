@@ -32,6 +32,7 @@ void ab_scene_take_contacts(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_loads(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_monitors(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_history(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_checkpoint(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_output(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_expects(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_trade(ab_scene_reader *reader, const ab_node *node); /* after the expects */

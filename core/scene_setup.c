@@ -101,6 +101,21 @@ void ab_scene_take_history(ab_scene_reader *r, const ab_node *node) {
     ab_read_integer(&r->base, &ab_section_history.keys[HISTORY_EVERY], v[HISTORY_EVERY], "history", &r->scene->history_every);
 }
 
+void ab_scene_take_checkpoint(ab_scene_reader *r, const ab_node *node) {
+    if (node == NULL) return;
+    ab_scene *scene = r->scene;
+    const ab_key *key = ab_section_checkpoint.keys;
+    const ab_node *v[CHECKPOINT_KEYS];
+    if (!ab_section_open(&r->base, &ab_section_checkpoint, node, "checkpoint", v)) return;
+    scene->has_checkpoint = true;
+    if (v[CHECKPOINT_EVERY] == NULL && v[CHECKPOINT_STEPS] == NULL && v[CHECKPOINT_WALL] == NULL)
+        ab_report_error(r->base.report, node->mark, "checkpoint: write every (s), steps or wall (minutes), or leave the key out");
+    ab_read_number(&r->base, &key[CHECKPOINT_EVERY], v[CHECKPOINT_EVERY], "checkpoint", &scene->checkpoint_every);
+    ab_read_integer(&r->base, &key[CHECKPOINT_STEPS], v[CHECKPOINT_STEPS], "checkpoint", &scene->checkpoint_steps);
+    ab_read_number(&r->base, &key[CHECKPOINT_WALL], v[CHECKPOINT_WALL], "checkpoint", &scene->checkpoint_wall);
+    scene->checkpoint_wall *= 60.0;
+}
+
 enum { MOST_FIELDS = 64 };
 
 static bool field_known(ab_scene_reader *r, const ab_node *node, const char *where) {

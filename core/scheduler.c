@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
+#include "core/checkpoint_run.h"
 #include "core/memory.h"
 #include "core/plan.h"
 #include "core/progress.h"
@@ -19,7 +21,11 @@ static const double COLLAPSED = 1e-9;  /* of the first limit of the step: a run 
 
 static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
 
-static void on_signal(int number) { stop_signal = number; }
+/* The first one ends the run after its step; whoever sends a second one does not want to wait: files are whole at any moment. */
+static void on_signal(int number) {
+    if (stop_signal) _exit(128 + number);
+    stop_signal = number;
+}
 
 /* Ways a run may be asked to end: each closes its files first. Writing past a file-size limit is an error of the write, not a death. */
 enum { ENDINGS = 3 };
@@ -283,8 +289,8 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
 
 /* ---- a run --------------------------------------------------------------------------------------------------------------- */
 
-/* Steps until the end, a failure or a signal. */
-static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progress, ab_report *report) {
+/* Steps until the end, a failure or a signal. A run that is stopped between two steps leaves a checkpoint. */
+static ab_status advance(ab_schedule *s, ab_results *results, ab_checkpoints *checkpoints, ab_progress *progress, ab_report *report) {
     while (s->time < s->scene->time_end && !stop_signal) {
         AB_TRY(ab_schedule_step(s, report));
         ab_state_view view;
@@ -293,9 +299,12 @@ static ab_status advance(ab_schedule *s, ab_results *results, ab_progress *progr
         TIMED(PHASE_RESULTS, status = ab_results_step(results, &view, report));
         AB_TRY(status);
         ab_progress_step(progress, &view);
-        AB_TRY(ab_watchdog_step(s, report));
+        const ab_status watched = ab_watchdog_step(s, report);
+        TIMED(PHASE_RESULTS, status = ab_checkpoints_step(checkpoints, s, results, watched != AB_OK, report));
+        AB_TRY(watched);
+        AB_TRY(status);
     }
-    return AB_OK;
+    return stop_signal ? ab_checkpoints_step(checkpoints, s, results, true, report) : AB_OK;
 }
 
 static void count_work(ab_schedule *s) {
@@ -312,31 +321,52 @@ static void count_work(ab_schedule *s) {
     }
 }
 
+/* The files, from the start or from where they were at a checkpoint. */
+static ab_status open_results(ab_schedule *s, ab_checkpoint *from, const char *folder, ab_results **results, ab_report *report) {
+    ab_state_view view;
+    ab_schedule_view(s, &view);
+    AB_TRY(ab_results_create(folder, s->scene, &view, results, report));
+    if (from) {
+        AB_TRY(ab_checkpoint_restore(from, s, *results));
+        return ab_results_continue(*results, report);
+    }
+    AB_TRY(ab_results_begin(*results, report));
+    return ab_results_step(*results, &view, report);
+}
+
 ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report *report) {
     ab_schedule *s = NULL;
-    AB_TRY(ab_schedule_create(scene, options, &s, report));
-    warn_of_dt(s, report);
+    ab_checkpoint *from = NULL;
+    if (options->restart) AB_TRY(ab_checkpoint_open_for(options->restart, scene, &from, report));
+    ab_status status = ab_schedule_create(scene, options, &s, report);
+    if (status != AB_OK) {
+        ab_checkpoint_destroy(from);
+        return status;
+    }
+    if (!from) warn_of_dt(s, report);
     ab_report_print(report, stderr);
     signal_keeper keeper;
     catch_signals(&keeper); /* before the first byte is written: a full disk or a signal must not end the program where nothing is said */
     ab_state_view view;
-    ab_schedule_view(s, &view);
     ab_results *results = NULL;
-    ab_status status = ab_results_open(options->folder, scene, &view, &results, report);
-    if (status == AB_OK) status = ab_results_step(results, &view, report);
+    ab_checkpoints checkpoints = {0};
+    status = open_results(s, from, options->folder, &results, report);
+    ab_checkpoint_destroy(from);
+    if (status == AB_OK) status = ab_checkpoints_begin(&checkpoints, s, options->folder, report);
     if (status != AB_OK) {
         ab_results_destroy(results);
         ab_schedule_destroy(s);
         release_signals(&keeper);
         return status;
     }
+    const long first = s->number;
     count_work(s);
     ab_progress progress;
     ab_progress_begin(&progress, stderr, options->quiet, scene->time_end, s->points + s->elements + s->rigid);
     ab_text plan_json = {0};
     ab_plan_add_json(&plan_json, s, options, 0.0);
     const double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    status = advance(s, results, &progress, report);
+    status = advance(s, results, &checkpoints, &progress, report);
     ab_progress_end(&progress);
     ab_run_facts facts = {.wall_seconds = seconds(CLOCK_MONOTONIC) - wall,
                           .cpu_seconds = seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu,
@@ -355,12 +385,13 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
         snprintf(outcome, sizeof outcome, "failed: %s", why ? why : "no reason given");
         facts.outcome = outcome;
     } else if (stop_signal) {
+        if (!options->quiet) fprintf(stderr, "stopped at t = %.9g s; go on with --restart %s\n", s->time, checkpoints.path);
         snprintf(outcome, sizeof outcome, "stopped by signal %d", (int)stop_signal);
         facts.outcome = outcome;
         status = (ab_status)(128 + stop_signal);
     }
     const double stepping = facts.wall_seconds - s->phase_seconds[PHASE_RESULTS];
-    const double rate = stepping > 0.0 ? (double)s->number / stepping : 0.0;
+    const double rate = stepping > 0.0 ? (double)(s->number - first) / stepping : 0.0;
     facts.point_steps_per_second = rate * (double)s->points;
     facts.element_steps_per_second = rate * (double)s->elements;
     facts.peak_bytes = ab_memory_peak();
@@ -385,6 +416,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status == AB_OK && missed && options->strict) status = AB_MISSED;
     ab_results_destroy(results);
     ab_text_clear(&plan_json);
+    ab_checkpoints_end(&checkpoints);
     ab_schedule_destroy(s);
     release_signals(&keeper);
     return status;

@@ -10,7 +10,8 @@ typedef struct ab_method { /* a way to compute a body; main lists them */
 } ab_method;
 
 typedef struct ab_run_options {
-    const char *folder; /* for the results */
+    const char *folder;  /* for the results */
+    const char *restart; /* checkpoint to go on from; NULL: from the start */
     int threads;
     bool quiet, strict;
     const ab_method *methods;

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/checkpoint.h"
+
 static const double ROUNDED = 1e-12; /* of a place: a step that moves by less is mostly rounding */
 static const double ROUNDING = 1e-6; /* of the kinetic energy of flight: less is not told from rounding */
 
@@ -87,4 +89,13 @@ ab_status ab_watchdog_step(ab_schedule *s, ab_report *report) {
                              "limit %.4g s (%s). %s. (watchdog: {stop: false} lets it go on)",
                              remainder, s->time, s->number, given, s->scene->watch_energy, what, s->dt, s->critical_dt, s->limit,
                              remedy(s, domain->spec));
+}
+
+bool ab_watchdog_keep(ab_schedule *s, ab_checkpoint *c) {
+    long count = s->watch_count;
+    if (!ab_keep_doubles(c, "watch_external", &s->watch_external, 1) || !ab_keep_doubles(c, "watch_potential", &s->watch_potential, 1) ||
+        !ab_keep_doubles(c, "watch_momentum", s->watch_momentum, 3) || !ab_keep_long(c, "watch_count", &count))
+        return false;
+    s->watch_count = (int)count;
+    return true;
 }

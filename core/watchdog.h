@@ -8,6 +8,10 @@
  * `watchdog.energy` of that for WATCH_STEPS steps on end ends the run: AB_FAILED, with body, point, place, time, limit of the step, likely cause and remedy. */
 ab_status ab_watchdog_step(ab_schedule *schedule, ab_report *report);
 
+/* What it remembers of a run, for checkpoints. */
+struct ab_checkpoint;
+bool ab_watchdog_keep(ab_schedule *schedule, struct ab_checkpoint *checkpoint);
+
 enum { WATCH_STEPS = 20 };
 
 #endif

@@ -216,7 +216,8 @@ static const ab_domain_ops OPS = {.method = "finite-elements",
                                   .count = fem_count,
                                   .fields = fem_fields,
                                   .read = fem_read,
-                                  .plan = plan};
+                                  .plan = plan,
+                                  .keep = fem_keep};
 
 /* ---- making -------------------------------------------------------------------------------------------------------------- */
 

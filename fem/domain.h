@@ -217,5 +217,9 @@ ab_status fem_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_re
 ab_status fem_inner_create(fem_body *, ab_report *);
 void fem_inner_destroy(fem_body *);
 ab_status fem_inner_follow(fem_body *, long step, ab_report *); /* at the start of a step */
+void fem_inner_keep(fem_body *, struct ab_checkpoint *);
+
+/* keep.c: checkpoints */
+void fem_keep(ab_domain *, struct ab_checkpoint *);
 
 #endif

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/checkpoint.h"
 #include "core/memory.h"
 #include "fem/inside.h"
 
@@ -288,4 +289,30 @@ ab_status fem_inner_follow(fem_body *body, long step, ab_report *report) {
     if (step > 0 && body->inside->some) AB_TRY(fit_layer(body, report));
     follow(body);
     return fem_trace_update(body->trace, &body->inner, report);
+}
+
+/* Which elements have points, and which of them are the inmost: made where the body was then, so it cannot be found again. The points themselves follow from that. */
+void fem_inner_keep(fem_body *body, ab_checkpoint *c) {
+    const bool loads = ab_checkpoint_loads(c);
+    const struct fem_inside *in = body->inside;
+    bool some = in->some, settled = in->settled, saw = fem_trace_saw_inmost(body->trace);
+    double depth = in->depth;
+    uint8_t *marks = ab_memory_take(body->elements);
+    if (!marks) {
+        ab_checkpoint_refuse(c, "no memory for the elements of body '%s'", body->domain.spec->name);
+        return;
+    }
+    if (!in->some) memset(marks, FEM_LAYER, body->elements);
+    for (size_t k = 0; in->some && k < in->elements; ++k) marks[in->element[k]] = body->inner.inmost[in->first[k]] ? FEM_RIM : FEM_LAYER;
+    bool good = ab_keep_flags(c, "layer", &some, 1) && ab_keep_flags(c, "layer_settled", &settled, 1) &&
+                ab_keep_flags(c, "layer_seen", &saw, 1) && ab_keep_doubles(c, "layer_depth", &depth, 1) &&
+                ab_keep_bytes(c, "layer_marks", marks, body->elements);
+    for (size_t e = 0; good && loads && e < body->elements; ++e) good = marks[e] <= FEM_LAYER && (some || marks[e] == FEM_LAYER);
+    if (good && loads) good = make_points(body, some ? marks : NULL, false, depth, ab_checkpoint_report(c)) == AB_OK;
+    if (good && loads) {
+        body->inside->settled = settled;
+        fem_trace_note_inmost(body->trace, saw);
+    }
+    if (!good) ab_checkpoint_refuse(c, "the points inside the elements of body '%s' cannot be brought back", body->domain.spec->name);
+    ab_memory_give(marks, body->elements);
 }

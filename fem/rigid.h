@@ -111,6 +111,9 @@ ab_status rigid_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_
 ab_status rigid_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 void rigid_node_tiles(const ab_domain *, ab_node_tiles *);
 
+/* keep.c: checkpoints */
+void rigid_keep(ab_domain *, struct ab_checkpoint *);
+
 /* rigid_fields.c: what results show */
 const ab_field *rigid_fields(const ab_domain *, size_t *count);
 size_t rigid_count(const ab_domain *);

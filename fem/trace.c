@@ -379,6 +379,7 @@ void fem_trace_tiles(const fem_trace *t, ab_node_tiles *tiles) {
 }
 
 bool fem_trace_saw_inmost(const fem_trace *t) { return t->saw_inmost; }
+void fem_trace_note_inmost(fem_trace *t, bool saw) { t->saw_inmost = saw; }
 
 /* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
 

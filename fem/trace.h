@@ -31,5 +31,6 @@ void fem_trace_tiles(const fem_trace *, ab_node_tiles *);
 ab_status fem_trace_nodes(fem_trace *, const fem_inner *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 /* True where a node that was asked for since the last update has got mass from an inmost point. */
 bool fem_trace_saw_inmost(const fem_trace *);
+void fem_trace_note_inmost(fem_trace *, bool saw); /* as it was when a checkpoint was written */
 
 #endif

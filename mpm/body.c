@@ -280,7 +280,7 @@ static double modulus(const ab_domain *domain) { return ((const mpm_body *)domai
 #define SAME_IN_ALL                                                                                                                        \
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
-    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = mpm_plan
+    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = mpm_plan, .keep = mpm_keep
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};

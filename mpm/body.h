@@ -294,6 +294,9 @@ ab_status mpm_faces(ab_domain *, ab_surface *, ab_report *);
 size_t mpm_outline_bytes(const struct mpm_outline *);
 void mpm_outline_destroy(struct mpm_outline *);
 
+/* keep.c: checkpoints */
+void mpm_keep(ab_domain *, struct ab_checkpoint *);
+
 /* fields.c */
 ab_status mpm_fields_create(mpm_body *, ab_report *);
 const ab_field *mpm_fields(const ab_domain *, size_t *count);

@@ -56,6 +56,7 @@ bool mpm_pieces_near(mpm_body *, const uint32_t *nodes, size_t count, mpm_near_p
 /* Loops from the pieces of outline that a fill leaves, in vertices about `spacing` apart (corners always; smooth stretches evenly). lifted: those of
  * smooth stretches stand a little outside, so that the loops enclose the area of the outline to second order; else on the outline. An error where the pieces do not close. */
 ab_status mpm_loops_create(const ab_fill *fill, double spacing, bool lifted, const char *body, mpm_loops *loops, ab_report *);
+bool mpm_loops_reserve(mpm_loops *, size_t count); /* room; false: no memory */
 void mpm_loops_clear(mpm_loops *);
 
 /* following[k], of fill->surface_count: the piece of outline that begins where piece k ends. AB_BAD_INPUT: the pieces do not close; AB_FAILED: no memory. */

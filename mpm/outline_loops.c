@@ -131,7 +131,7 @@ static bool grow(void *pointer, size_t count, size_t size) {
     return more != NULL;
 }
 
-static bool reserve(mpm_loops *loops, size_t count) {
+bool mpm_loops_reserve(mpm_loops *loops, size_t count) {
     if (count <= loops->capacity) return true;
     const size_t n = count + count / 2 + 16;
     if (!grow(&loops->x, 2 * n, sizeof(double)) || !grow(&loops->next, n, sizeof *loops->next) ||
@@ -144,7 +144,7 @@ static bool reserve(mpm_loops *loops, size_t count) {
 
 /* arm: of both points, or NULL where they are set when all vertices are in their places. */
 static bool add_vertex(mpm_loops *loops, const double x[2], bool corner, const uint32_t point[2], const double arm[4]) {
-    if (!reserve(loops, loops->count + 1)) return false;
+    if (!mpm_loops_reserve(loops, loops->count + 1)) return false;
     const size_t k = loops->count++;
     for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] = x[c], loops->point[2 * k + c] = point[c];
     for (size_t c = 0; c < 4; ++c) loops->arm[4 * k + c] = arm ? arm[c] : 0.0;
@@ -302,7 +302,7 @@ ab_status mpm_loops_even(mpm_loops *loops, double shortest, double longest, cons
     }
     if (!due) return AB_OK;
     mpm_loops even = {0};
-    if (!reserve(&even, 2 * loops->count)) goto no_memory;
+    if (!mpm_loops_reserve(&even, 2 * loops->count)) goto no_memory;
     for (size_t begin = 0; begin < loops->count;) { /* a loop's vertices stand one after the other */
         size_t end_ = begin;
         while (loops->next[end_] != begin) ++end_;

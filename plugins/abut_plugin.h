@@ -39,8 +39,8 @@ extern "C" {
 #endif
 
 #define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
-#define AB_ABI_MINOR 2u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
-                            2: density gradients, nearest faces, needs that hang on settings */
+#define AB_ABI_MINOR 3u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
+                            2: density gradients, nearest faces, needs that hang on settings; 3: save and load */
 
 #if defined(__GNUC__)
 #define AB_EXPORT __attribute__((visibility("default")))
@@ -296,6 +296,13 @@ typedef struct ab_contact_ops {
 enum ab_kind { AB_MATERIAL = 1, AB_BOUNDARY, AB_CONTACT };
 enum ab_spaces { AB_PLANE_STRAIN = 1u, AB_AXISYMMETRIC = 2u, AB_SPACE_3D = 4u };
 
+typedef struct ab_stream { /* bytes of a checkpoint; since 1.3. 0, or negative: no memory, or nothing left to read */
+    uint32_t struct_size;
+    void *context; /* hand it back in each call */
+    int (*write)(void *context, const void *bytes, size_t count);
+    int (*read)(void *context, void *bytes, size_t count);
+} ab_stream;
+
 typedef struct ab_class {
     uint32_t struct_size;
     uint32_t kind;   /* enum ab_kind */
@@ -309,6 +316,10 @@ typedef struct ab_class {
     void (*destroy)(void *self); /* both NULL in a class without settings that keeps nothing: self is then NULL */
     const void *ops; /* ab_material_ops, ab_boundary_ops or ab_contact_ops */
     uint32_t (*needs_with)(const ab_value *settings); /* optional, contact, since 1.2: what it needs beyond `needs` with these settings; pure, called often */
+    /* Optional, both or neither, since 1.3: what an instance remembers from one step to the next beside its declared states, for checkpoints. Between two steps, on one
+     * thread. load meets an instance just created with the same settings, and has to read all that save wrote. */
+    int (*save)(void *self, const ab_stream *stream);
+    int (*load)(void *self, const ab_stream *stream);
 } ab_class;
 
 typedef struct ab_plugin {

@@ -390,6 +390,23 @@ static int find(void *itself, const ab_trace *a, const ab_trace *b, ab_points *o
     return remember(self, out) ? 0 : -1;
 }
 
+static int save(void *itself, const ab_stream *stream) {
+    segments *self = itself;
+    const int status = stream->write(stream->context, &self->before_count, sizeof self->before_count);
+    return status != 0 ? status : stream->write(stream->context, self->before, self->before_count * sizeof *self->before);
+}
+
+static int load(void *itself, const ab_stream *stream) {
+    segments *self = itself;
+    size_t count = 0;
+    if (stream->read(stream->context, &count, sizeof count) != 0 || count > UINT32_MAX) return -1;
+    if (!room(self->host, &self->before, &self->before_bytes, (count + 1) * sizeof *self->before)) return -1;
+    self->before_count = 0;
+    if (stream->read(stream->context, self->before, count * sizeof *self->before) != 0) return -1;
+    self->before_count = count;
+    return 0;
+}
+
 static const ab_contact_ops OPS = {sizeof OPS, find, NULL};
 static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
@@ -406,6 +423,8 @@ static const ab_class CLASS = {
     .create = create,
     .destroy = destroy,
     .ops = &OPS,
+    .save = save,
+    .load = load,
 };
 static const ab_class *const CLASSES[] = {&CLASS};
 const ab_plugin abut_plugin_v1 = {AB_PLUGIN_HEAD(1), "point-to-segment", "1.0", "MIT", CLASSES};

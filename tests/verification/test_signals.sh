@@ -1,6 +1,6 @@
 #!/bin/bash
 # cost: 8
-# A run that is asked to end by a signal says so, leaves what it had and exits 128 + the signal; one that meets a full disk, at once or later, exits 1 and says which
+# A run that is asked to end by a signal says so, leaves what it had with a checkpoint and exits 128 + the signal; one that meets a full disk, at once or later, exits 1 and says which
 # file could not be written. test_signals.sh BUILD
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -39,7 +39,29 @@ for signal in INT TERM HUP; do
     [ $status -eq $((128 + number)) ] || say "SIG$signal: exit $status, wanted $((128 + number))" "$out.log"
     grep -q "\"outcome\": \"stopped by signal $number\"" "$out/summary.json" || say "SIG$signal: summary.json does not say that the run was stopped"
     /usr/bin/python3 tests/verification/check_results.py "$out" >"$out.check" 2>&1 || say "SIG$signal: the results cannot be read" "$out.check"
+    [ -f "$out/checkpoint.abut" ] || say "SIG$signal: no checkpoint"
+    end=$(/usr/bin/python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["time"] + 1e-3)' "$out/summary.json")
+    "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" --restart "$out/checkpoint.abut" --set time.end="$end" >"$out.log" 2>&1 ||
+        say "SIG$signal: exit $? of a run that goes on from its checkpoint" "$out.log"
 done
+
+# Whoever sends a second signal is not kept waiting, and the frames can be read. Stopped by SIGSTOP, the run meets both at once.
+out=$scratch/twice
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" >"$out.log" 2>&1 &
+run=$!
+for _ in $(seq 200); do
+    [ "$(grep -c '<Time ' "$out/results.xdmf" 2>/dev/null)" -ge 3 ] 2>/dev/null && break
+    sleep 0.05
+done
+kill -STOP $run
+kill -TERM $run
+kill -INT $run
+kill -CONT $run
+wait $run
+status=$?
+[ $status -eq 130 ] || [ $status -eq 143 ] || say "two signals: exit $status" "$out.log"
+[ ! -f "$out/summary.json" ] || say "two signals: the run was ended in good order, not at once"
+/usr/bin/python3 tests/verification/check_results.py "$out" --partial >"$out.check" 2>&1 || say "two signals: the results cannot be read" "$out.check"
 
 # full NAME KIB CELL: no file may grow beyond that; the size of the cell says how large a frame is.
 full() {
@@ -58,12 +80,17 @@ full later 60 1
 /usr/bin/python3 tests/verification/check_results.py "$scratch/full_later" --partial >"$scratch/later.check" 2>&1 ||
     say "the frames before a full disk cannot be read" "$scratch/later.check"
 
-mkdir -p "$scratch/full"
-ln -s /dev/full "$scratch/full/history.csv"
-"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$scratch/full" --set time.end=0.01 >"$scratch/full.log" 2>&1
-status=$?
-[ $status -eq 1 ] || say "/dev/full: exit $status, wanted 1" "$scratch/full.log"
-grep -qE "history.csv': No space left on device; name another folder" "$scratch/full.log" || say "/dev/full: the message does not name history.csv" "$scratch/full.log"
+# A link in the folder is replaced by a file of our own: nothing is written where it leads to.
+mkdir -p "$scratch/linked"
+echo mine >"$scratch/precious"
+for name in history.csv history.csv.part summary.json summary.json.part results.h5.part checkpoint.abut.part; do ln -s ../precious "$scratch/linked/$name"; done
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$scratch/linked" --set time.end=0.002 --set checkpoint.steps=5 >"$scratch/linked.log" 2>&1 ||
+    say "a folder with links in it: exit $?" "$scratch/linked.log"
+[ "$(cat "$scratch/precious")" = mine ] || say "a run has written through a link out of its folder"
+mkdir -p "$scratch/linked_frames" "$scratch/elsewhere"
+ln -s ../elsewhere "$scratch/linked_frames/frames"
+"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$scratch/linked_frames" --set time.end=0.002 >"$scratch/linked.log" 2>&1
+[ $? -eq 1 ] && grep -q "frames' is a link to another place" "$scratch/linked.log" || say "frames is a link to another folder: not refused" "$scratch/linked.log"
 
 # A place where nothing can be made is said as that.
 mkdir -p "$scratch/taken/history.csv"
