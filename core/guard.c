@@ -315,11 +315,21 @@ static void destroy(void *self) {
     free(guard);
 }
 
+static int save(void *self, const ab_stream *stream) {
+    const ab_guard *guard = self;
+    return guard->inner->class_.save(guard->self, stream);
+}
+static int load(void *self, const ab_stream *stream) {
+    const ab_guard *guard = self;
+    return guard->inner->class_.load(guard->self, stream);
+}
+
 void ab_guard_class(const ab_loaded_class *inner, ab_loaded_class *outer) {
     *outer = *inner;
     outer->guarded = inner;
     outer->class_.create = create;
     outer->class_.destroy = destroy;
+    if (inner->class_.save) outer->class_.save = save, outer->class_.load = load;
     if (inner->material.update) outer->material.update = ab_guard_update;
     if (inner->material.start) outer->material.start = ab_guard_start;
     if (inner->contact.find) outer->contact.find = ab_guard_find;
