@@ -16,8 +16,9 @@
 static const ab_key top[] = {
     [TOP_ABUT] = {"abut", AB_KEY_INTEGER, .flags = AB_KEY_REQUIRED, .unit = "1", .help = "version of the scene format, 1"},
     [TOP_TITLE] = {"title", AB_KEY_TEXT, .initial = "", .help = "one line that says what this is"},
-    [TOP_SPACE] = {"space", AB_KEY_WORD, .initial = "plane-strain", .words = "plane-strain|axisymmetric|!3d",
-                   .help = "kind of space; axisymmetric: x is the radius, y runs along the axis, masses, forces and energies are of whole rings"},
+    [TOP_SPACE] =
+        {"space", AB_KEY_WORD, .initial = "plane-strain", .words = "plane-strain|axisymmetric|!3d",
+         .help = "kind of space; axisymmetric: x is the radius, y runs along the axis, masses, forces and energies are of whole rings"},
     [TOP_CONSTANTS] = {"constants", AB_KEY_SECTION, .help = "names for numbers, used in every expression"},
     [TOP_GRAVITY] = {"gravity", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLE_T,
                      .help = "acceleration of gravity"},
@@ -36,9 +37,10 @@ static const ab_key top[] = {
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_SECTION, .help = "when the state of the run is saved, to go on from"},
-    [TOP_CHECKED] = {"checked", AB_KEY_FLAG, .initial = "false",
-                     .help = "watch every call of every plugin: arrays that end where memory ends, old state read only, finite numbers, losses not "
-                             "negative, weights that sum to 1; a broken promise ends the run. Same results, slower; for plugins under development"},
+    [TOP_CHECKED] =
+        {"checked", AB_KEY_FLAG, .initial = "false",
+         .help = "watch every call of every plugin: arrays that end where memory ends, old state read only, finite numbers, losses not "
+                 "negative, weights that sum to 1; a broken promise ends the run. Same results, slower; for plugins under development"},
     [TOP_WATCHDOG] = {"watchdog", AB_KEY_SECTION, .help = "when a run is ended because it makes energy"},
     [TOP_TRADE] = {"trade", AB_KEY_SECTION, .help = "settings that `abut trade` tries; a run does not look at them"},
     [TOP_EXTREMES] = {"extremes", AB_KEY_SECTION,
@@ -476,12 +478,14 @@ static const ab_key extreme[] = {
 SECTION(extreme, "extremes.vary[i]", extreme, NULL, "A list.",
         "- {name: friction, set: constants.mu, from: 1e-3, to: 1e6}\n- {set: constants.turned, values: [0, 1], same: 1e-10}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,  &ab_section_time,    &ab_section_grid,
-                                         &ab_section_sides,    &ab_section_material, &ab_section_body,    &ab_section_shape,
-                                         &ab_section_disc,     &ab_section_ring,     &ab_section_fill,    &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_surface,  &ab_section_mesh,    &ab_section_patch,
-                                         &ab_section_arc,      &ab_section_fix,      &ab_section_motion,  &ab_section_contact,
-                                         &ab_section_load,     &ab_section_where,    &ab_section_monitor, &ab_section_history,
-                                         &ab_section_output,   &ab_section_expect,   &ab_section_trade,   &ab_section_ladder,
-                                         &ab_section_watchdog, &ab_section_extremes, &ab_section_extreme,
-                                         &ab_section_checkpoint, NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,    &ab_section_time,
+                                         &ab_section_grid,     &ab_section_sides,      &ab_section_material,
+                                         &ab_section_body,     &ab_section_shape,      &ab_section_disc,
+                                         &ab_section_ring,     &ab_section_fill,       &ab_section_basis,
+                                         &ab_section_transfer, &ab_section_surface,    &ab_section_mesh,
+                                         &ab_section_patch,    &ab_section_arc,        &ab_section_fix,
+                                         &ab_section_motion,   &ab_section_contact,    &ab_section_load,
+                                         &ab_section_where,    &ab_section_monitor,    &ab_section_history,
+                                         &ab_section_output,   &ab_section_expect,     &ab_section_trade,
+                                         &ab_section_ladder,   &ab_section_watchdog,   &ab_section_extremes,
+                                         &ab_section_extreme,  &ab_section_checkpoint, NULL};

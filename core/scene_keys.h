@@ -109,8 +109,7 @@ extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
     ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
-    ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme,
-    ab_section_checkpoint;
+    ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme, ab_section_checkpoint;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

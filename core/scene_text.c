@@ -7,8 +7,8 @@
 
 #include "core/scene_reader.h"
 
-static const char *const MAY_CHANGE[] = {"title",  "time.end",   "monitors", "history", "output",
-                                         "expect", "checkpoint", "watchdog", "checked", "trade"};
+static const char *const MAY_CHANGE[] = {"title",      "time.end", "monitors", "history", "output",  "expect",
+                                         "checkpoint", "watchdog", "checked",  "trade",   "extremes"};
 
 static void write_node(const ab_node *node, const char *path, ab_text *text) {
     char below[1000];
