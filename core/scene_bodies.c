@@ -189,10 +189,6 @@ static void take_points(ab_scene_reader *r, const ab_node *const *v, const char 
     char *cells = NULL;
     if (ab_read_word(&r->base, &ab_section_body.keys[BODY_F_BAR], v[BODY_F_BAR], where, &cells))
         body->f_bar = strcmp(cells, "cell") == 0 ? AB_F_BAR_CELL : strcmp(cells, "patch") == 0 ? AB_F_BAR_PATCH : AB_F_BAR_NONE;
-    if (body->basis != NULL && body->update != NULL && strcmp(body->basis, "linear") == 0 && strcmp(body->update, "usl") == 0)
-        ab_report_warning(r->base.report, v[BODY_UPDATE]->mark,
-                          "%s: basis linear with update usl is unstable where a cell holds little mass; basis gimp or update musl is not",
-                          where);
     if (body->basis != NULL && body->update != NULL && body->transfer == AB_TRANSFER_TPIC && strcmp(body->basis, "gimp") == 0 &&
         strcmp(body->update, "usl") == 0) /* slopes at the edge of the body feed the strain that makes them: a bar blows up at any dt */
         ab_report_error(

@@ -49,7 +49,9 @@ static bool describe(const ab_domain *domain, double dt, char *text, size_t size
 static const char *remedy(const ab_schedule *s, const ab_body_spec *body) {
     if (s->dt > s->critical_dt) return "dt is above the stable limit: use a cfl below 1, or a dt below the limit";
     if (body->basis && !strcmp(body->basis, "linear"))
-        return "the linear basis has no stable step, as a point just behind a node leaves it next to no mass: use basis gimp or bspline2";
+        return "points of the linear basis pull at other nodes all at once as they cross cells: use basis gimp or bspline2, a smaller cfl, "
+               "or "
+               "update usl";
     if (body->basis && body->transfer == AB_TRANSFER_FLIP && body->flip == 1.0)
         return "flip keeps what the nodes do not see, and it may grow while a body moves through cells: use transfer apic or {flip: 0.99}, "
                "or update usl";

@@ -38,6 +38,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->volumetric, body->volumetric_capacity * sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
+    mpm_light_destroy(body);
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
     mpm_outline_destroy(body->outline);
@@ -73,11 +74,12 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
         mpm_body_force_scatter(body);
     }
     mpm_grid_assemble(body, step, body->update != MPM_USF);
-    return AB_OK;
+    return mpm_light_tie(body, report);
 }
 
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
 static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report) {
+    mpm_light_follow(body);
     mpm_loads_follow(body, step);
     mpm_outline_follow(body, step);
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
@@ -125,7 +127,7 @@ static ab_status early(ab_domain *domain, const ab_step *step, ab_report *report
     mpm_loads_scatter(body, step);
     mpm_body_force_scatter(body);
     mpm_grid_assemble(body, step, true);
-    return AB_OK;
+    return mpm_light_tie(body, report);
 }
 
 /* A point is outside the grid: stop, naming it, or let it go where the side says outflow. */
@@ -209,7 +211,11 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
 
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
-    if (step->damping > 0.0) body->energy.damping += mpm_grid_damp(body, step->damping);
+    if (step->damping > 0.0) {
+        mpm_light_quiet(body);
+        body->energy.damping += mpm_grid_damp(body, step->damping);
+    }
+    mpm_light_follow(body);
     mpm_filter(body);
     const bool remap = body->update == MPM_MUSL;
     if (!remap) {
@@ -229,6 +235,7 @@ static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report
     (void)report;
     mpm_body *body = (mpm_body *)domain;
     mpm_grid_assemble_remap(body);
+    mpm_light_remap(body);
     mpm_loads_work(body, step); /* what points gain from a nodal force is force x (mapped velocity before + after)/2, exactly */
     mpm_body_force_work(body, step);
     return AB_OK;

@@ -86,6 +86,14 @@ typedef struct mpm_load {      /* a piece of outline with a traction or a pressu
 
 typedef struct mpm_body mpm_body;
 
+typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.c */
+    uint32_t dof, to[8];
+    int32_t count;
+    double weight[8];
+    double rest[2]; /* kg m/s: its momentum that is not of the line */
+} mpm_tie;
+enum { MPM_LIGHT_MORE = 96 }; /* a stencil is longer by so many at most where light ones go by others; one of four nodes by 32 */
+
 /* What the points of a block are to the nodes: of node k = j*nodes + i, i and j from 0 to nodes-1, the value and the gradient (1/m) for each of the eight
  * points. Nodes of no weight may be among them: values and gradients are 0 there. */
 typedef struct mpm_stencils {
@@ -105,6 +113,7 @@ typedef struct mpm_kernel {
     int patch;                /* MPM_PATCH_NARROW or MPM_PATCH_WIDE */
     double reach;             /* cells: farther away than this in some direction a point has no weight */
     bool domains;             /* points have domains of their own: rows half, inverse_half, and extent where they follow the stretch */
+    bool ties_light;          /* nodes of next to no mass go by their neighbours: light_nodes.c */
     bool convected;           /* points have parallelograms of their own: rows corners */
     bool moment, same_spread; /* apic takes moments of the velocities; D is the same everywhere but at sides: see transfer.inc */
     /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places, with 1 .. 8 points per direction */
@@ -173,6 +182,12 @@ struct mpm_body {
     size_t own_capacity, filter_capacity, volumetric_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
+    double light_limit; /* kg: nodes with less are looked at in every step; 0: none */
+    uint64_t *light;    /* per tile: a bit for each of its nodes with less */
+    mpm_tie *ties;      /* of this step, by dof */
+    uint32_t *lines;    /* nodes that others go by, each once */
+    double *back;       /* xpic, fmpm: a pair per node, what comes back */
+    size_t back_capacity, light_capacity, tie_count, tie_capacity, line_count, line_capacity;
     uint64_t version; /* of the tile list */
     bool scattered;   /* the patches hold this step's points already */
     bool sort_due;
@@ -258,6 +273,18 @@ void mpm_grid_fetch_volumetric(const mpm_body *, size_t tile, int from, double *
 void mpm_grid_add_pairs(const mpm_body *, size_t tile, double *sum);                    /* what patches of pairs hold of its own nodes */
 double mpm_grid_damp(mpm_body *, double factor);                                        /* after contact; energy taken, J */
 void mpm_grid_limit_light(mpm_body *); /* USL: light nodes take their old velocity for the strain */
+
+/* light_nodes.c: where kernel->ties_light is not set, nothing is done and no tie is there */
+bool mpm_light_reserve(mpm_body *, size_t tiles); /* false: no memory */
+ab_status mpm_light_tie(mpm_body *, ab_report *); /* after mpm_grid_assemble: which nodes are light; their masses and momenta to others */
+void mpm_light_follow(mpm_body *);                /* after others have changed the velocities of nodes */
+void mpm_light_quiet(mpm_body *);                 /* before mpm_grid_damp: they are not damped on their own */
+void mpm_light_remap(mpm_body *);                 /* after mpm_grid_assemble_remap */
+void mpm_light_filter(mpm_body *, double *back);  /* what came back to the nodes (pairs), each by its own mass */
+const mpm_tie *mpm_light_tie_of(const mpm_body *, uint32_t dof); /* NULL: the node is a degree of freedom */
+/* Nodes that a light one goes by in its place, with their weights; the new count. Room for MPM_LIGHT_MORE more. */
+size_t mpm_light_expand(const mpm_body *, uint32_t *dof, double *weight, size_t count);
+void mpm_light_destroy(mpm_body *);
 
 /* loads.c */
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);

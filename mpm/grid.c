@@ -63,6 +63,7 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
         double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
         add_patches(body, tile, 8, sum);
         double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+        uint64_t light = 0;
         for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
             const double *s = sum + 8 * n;
             const double mass = s[NODE_MASS];
@@ -70,6 +71,7 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
                 *(v8 *)own = v8_set(0.0);
                 continue;
             }
+            light |= (uint64_t)(mass < body->light_limit) << n;
             const double inverse = 1.0 / mass;
             double free_[2] = {1.0, 1.0};
             if (tile->held) side_mask(body, tile, n, free_);
@@ -83,6 +85,7 @@ void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
             }
             own[OWN_MASS] = mass;
         }
+        if (body->light) body->light[k] = light;
     }
 }
 
@@ -166,11 +169,26 @@ void mpm_grid_filter_assemble(mpm_body *body) {
         add_patches(body, body->tiles + k, 2, back);
         const double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
         double *filter = body->filter + k * FILTER_RECORD * AB_TILE_NODES;
+        if (body->tie_count) {
+            double *raw = body->back + k * 2 * AB_TILE_NODES;
+            for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD)
+                for (int c = 0; c < 2; ++c) raw[2 * n + c] = own[OWN_INVERSE + c] > 0.0 ? back[2 * n + c] / own[OWN_MASS] : 0.0;
+            continue;
+        }
         for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD, filter += FILTER_RECORD)
             for (int c = 0; c < 2; ++c) {
                 filter[FILTER_REST + c] -= back[2 * n + c] * own[OWN_INVERSE + c];
                 filter[FILTER_SUM + c] += filter[FILTER_REST + c];
             }
+    }
+    if (!body->tie_count) return;
+    mpm_light_filter(body, body->back);
+    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
+        double *filter = body->filter + n * FILTER_RECORD;
+        for (size_t c = 0; c < 2; ++c) {
+            filter[FILTER_REST + c] -= body->back[2 * n + c];
+            filter[FILTER_SUM + c] += filter[FILTER_REST + c];
+        }
     }
 }
 
@@ -188,7 +206,8 @@ double mpm_grid_damp(mpm_body *body, double factor) {
             const double old = own[OWN_OLD + c], v = own[OWN_VELOCITY + c];
             const double change = -copysign(fmin(factor * fabs(v - old), fabs(v)), v);
             own[OWN_VELOCITY + c] = v + change;
-            taken -= own[OWN_MASS] * change * 0.5 * (old + v + change);
+            const double mass = body->tie_count && own[OWN_INVERSE + c] > 0.0 ? 1.0 / own[OWN_INVERSE + c] : own[OWN_MASS];
+            taken -= mass * change * 0.5 * (old + v + change);
         }
     }
     return taken;

@@ -211,7 +211,7 @@ ab_status mpm_faces(ab_domain *domain, ab_surface *surface, ab_report *report) {
     if (!o) return AB_OK;
     const mpm_loops *loops = &o->loops;
     if (!reserve(o)) return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
-    const size_t most = o->touching ? mpm_touching_most_nodes() : NODES;
+    const size_t most = MPM_LIGHT_MORE + (o->touching ? mpm_touching_most_nodes() : NODES);
     if (o->touching && !mpm_touching_place(body, true)) return lost(body, loops->x, report);
     o->start[0] = 0;
     for (size_t k = 0; k < loops->count; ++k) {
@@ -219,8 +219,9 @@ ab_status mpm_faces(ab_domain *domain, ab_surface *surface, ab_report *report) {
         const size_t at = o->start[k];
         if (!reserve_stencil(o, at + most))
             return ab_report_failure(report, "body '%s': no memory for %zu faces", domain->spec->name, loops->count);
-        const size_t count = o->touching ? mpm_touching_stencil(body, k, o->dof + at, o->weight + at)
-                                         : (size_t)stencil_of(body, x, o->dof + at, o->weight + at);
+        size_t count = o->touching ? mpm_touching_stencil(body, k, o->dof + at, o->weight + at)
+                                   : (size_t)stencil_of(body, x, o->dof + at, o->weight + at);
+        count = mpm_light_expand(body, o->dof + at, o->weight + at, count);
         if (count == 0) return lost(body, x, report);
         o->start[k + 1] = at + count;
         o->position[k] = x[0];

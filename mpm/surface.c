@@ -4,6 +4,8 @@
 
 #include "mpm/outline.h"
 
+enum { ROOM = 36 }; /* nodes of a point, at most: with light ones' own those of 6 x 6 */
+
 struct mpm_surface {
     size_t capacity, count; /* points; ld of the arrays */
     double *position, *extent, *area;
@@ -48,8 +50,8 @@ static bool reserve_points(struct mpm_surface *s) {
     if (s->count + 8 <= old) return true;
     const size_t n = (2 * s->count + 64) / 8 * 8;
     if (!grow(&s->position, 2 * n, sizeof(double)) || !grow(&s->extent, 3 * n, sizeof(double)) || !grow(&s->area, n, sizeof(double)) ||
-        !grow(&s->key, n, sizeof *s->key) || !grow(&s->start, n + 1, sizeof *s->start) || !grow(&s->dof, MPM_STENCIL * n, sizeof *s->dof) ||
-        !grow(&s->weight, MPM_STENCIL * n, sizeof(double)))
+        !grow(&s->key, n, sizeof *s->key) || !grow(&s->start, n + 1, sizeof *s->start) || !grow(&s->dof, ROOM * n, sizeof *s->dof) ||
+        !grow(&s->weight, ROOM * n, sizeof(double)))
         return false;
     for (size_t i = s->count; i-- > 0;) s->position[n + i] = s->position[old + i];
     for (size_t row = 2; row > 0; --row)
@@ -133,6 +135,7 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
             sum += value;
         }
     for (size_t k = s->start[to]; k < at; ++k) s->weight[k] /= sum;
+    at = s->start[to] + mpm_light_expand(body, s->dof + s->start[to], s->weight + s->start[to], at - s->start[to]);
     s->start[to + 1] = at;
     if (at == s->start[to]) --s->count; /* it has no mass that a node could hold */
 }

@@ -47,15 +47,16 @@ ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, 
         if (unique == 0 || all[k] != all[unique - 1]) all[unique++] = all[k];
 
     size_t keys_capacity = body->tile_capacity, tiles_capacity = body->tile_capacity, own_capacity = body->own_capacity;
-    const bool grown = ab_memory_grow((void **)&body->keys, &keys_capacity, unique, sizeof *body->keys) &&
-                       ab_memory_grow((void **)&body->tiles, &tiles_capacity, unique, sizeof *body->tiles) &&
-                       ab_memory_grow((void **)&body->own, &own_capacity, unique, sizeof(double) * OWN_RECORD * AB_TILE_NODES) &&
-                       (body->order < 2 || ab_memory_grow((void **)&body->filter, &body->filter_capacity, unique,
-                                                          sizeof(double) * FILTER_RECORD * AB_TILE_NODES)) &&
-                       (!body->f_bar || ab_memory_grow((void **)&body->volumetric, &body->volumetric_capacity, unique,
-                                                       sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES)) &&
-                       ab_memory_grow((void **)&body->sums, &body->sums_capacity, unique, sizeof *body->sums) &&
-                       ab_memory_grow((void **)&body->patches, &body->patch_capacity, count, sizeof(double) * mpm_patch_doubles(body));
+    const bool grown =
+        ab_memory_grow((void **)&body->keys, &keys_capacity, unique, sizeof *body->keys) &&
+        ab_memory_grow((void **)&body->tiles, &tiles_capacity, unique, sizeof *body->tiles) &&
+        ab_memory_grow((void **)&body->own, &own_capacity, unique, sizeof(double) * OWN_RECORD * AB_TILE_NODES) &&
+        (body->order < 2 ||
+         ab_memory_grow((void **)&body->filter, &body->filter_capacity, unique, sizeof(double) * FILTER_RECORD * AB_TILE_NODES)) &&
+        (!body->f_bar || ab_memory_grow((void **)&body->volumetric, &body->volumetric_capacity, unique,
+                                        sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES)) &&
+        mpm_light_reserve(body, unique) && ab_memory_grow((void **)&body->sums, &body->sums_capacity, unique, sizeof *body->sums) &&
+        ab_memory_grow((void **)&body->patches, &body->patch_capacity, count, sizeof(double) * mpm_patch_doubles(body));
     body->tile_capacity = tiles_capacity;
     body->own_capacity = own_capacity;
     if (!grown) {

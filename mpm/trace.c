@@ -10,6 +10,8 @@ typedef struct near_point {
     uint32_t slot;
 } near_point;
 
+enum { TIED = sizeof(((mpm_tie *)0)->to) / sizeof(uint32_t) }; /* nodes that a light one goes by, at most */
+
 struct mpm_trace {
     size_t capacity, near_capacity, entry_capacity, tile_capacity, density_capacity;
     double *position, *mass, *mass_gradient, *area_vector, *density_gradient;
@@ -55,7 +57,8 @@ static bool reserve(mpm_body *body, size_t count) {
     if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->mass, n, sizeof(double)) ||
         !grow(&t->mass_gradient, 2 * n, sizeof(double)) || !grow(&t->area_vector, 2 * n, sizeof(double)) ||
         !grow(&t->near_start, n + 1, sizeof(size_t)) || !grow(&t->stencil_start, n + 1, sizeof(size_t)) ||
-        !grow(&t->stencil_dof, n, sizeof(uint32_t)) || !grow(&t->stencil_weight, n, sizeof(double)) || !grow(&t->key, n, sizeof(uint64_t)))
+        !grow(&t->stencil_dof, TIED * n, sizeof(uint32_t)) || !grow(&t->stencil_weight, TIED * n, sizeof(double)) ||
+        !grow(&t->key, n, sizeof(uint64_t)))
         return false;
     t->capacity = n;
     return true;
@@ -207,6 +210,7 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
     const size_t ld = t->capacity;
     memset(t->mass_gradient, 0, 2 * ld * sizeof(double));
     memset(t->area_vector, 0, 2 * ld * sizeof(double));
+    size_t stencil = 0;
     for (size_t k = 0; k < count; ++k) {
         const mpm_tile *tile = body->tiles + nodes[k] / AB_TILE_NODES;
         const int n = (int)(nodes[k] % AB_TILE_NODES), i = tile->tx * AB_TILE + n % AB_TILE, j = tile->ty * AB_TILE + n / AB_TILE;
@@ -214,11 +218,13 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         t->position[ld + k] = body->h * j;
         t->mass[k] = body->own[(size_t)nodes[k] * OWN_RECORD + OWN_MASS];
         t->key[k] = ab_tile_key(i, j);
-        t->stencil_start[k] = k;
-        t->stencil_dof[k] = nodes[k];
-        t->stencil_weight[k] = 1.0;
+        const mpm_tie *tie = body->tie_count ? mpm_light_tie_of(body, nodes[k]) : NULL;
+        t->stencil_start[k] = stencil;
+        for (int e = 0; tie && e < tie->count; ++e, ++stencil)
+            t->stencil_dof[stencil] = tie->to[e], t->stencil_weight[stencil] = tie->weight[e];
+        if (!tie) t->stencil_dof[stencil] = nodes[k], t->stencil_weight[stencil++] = 1.0;
     }
-    t->stencil_start[count] = count;
+    t->stencil_start[count] = stencil;
     size_t entries = 0;
     if (needs & (AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS)) {
         const size_t tiles = candidate_tiles(body, nodes, count);

@@ -302,11 +302,7 @@ static void test_units_of_expects_follow_the_norm(void **state) {
 
 static void test_doubtful_choices_are_warned_of(void **state) {
     (void)state;
-    outcome o = read_changed("    fill: {rule: gauss, per_cell: 9}\n", "    basis: linear\n    update: usl\n", NULL, 0);
-    assert_int_equal(o.status, AB_OK);
-    assert_true(said(&o, "warning: bodies.block: basis linear with update usl"));
-    forget(&o);
-    o = read_changed("contact:\n  - bodies: [block, plane]\n    algorithm: multi-velocity\n    friction: mu\nmonitors:\n  - {name: x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}",
+    outcome o = read_changed("contact:\n  - bodies: [block, plane]\n    algorithm: multi-velocity\n    friction: mu\nmonitors:\n  - {name: x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}",
                      "monitors:\n  - {name: x, body: block, value: position.x}", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_true(said(&o, "warning: bodies 'plane' and 'block' touch or overlap"));

@@ -1,0 +1,249 @@
+/* light_nodes.c: nodes with next to no mass, which the linear basis makes wherever a body's edge has just passed a node. A point eps of a cell behind it gives the node
+ * eps of its mass, but pulls at it with all its stress, so the node's frequency grows as 1/sqrt(eps) and no step is stable. As the slivers of cut elements are made
+ * part of their neighbours (extended B-splines: Hoellig, Reif and Wipper 2001; aggregation of cut cells: Badia, Verdugo and Martin 2018), a light node here is no
+ * degree of freedom: it goes on the line through two heavy nodes beside it,
+ *     v_i = sum_j w_ij v_j,   w = (2, -1) along a row, a column or a diagonal of the grid, and the mean where there are several,
+ * and what it holds goes to them by the same weights, so that their space is that of N_j + w_ij N_i:
+ *     m_j += w_ij m_i,   p_j += w_ij p_i,   f_j += w_ij f_i.
+ * As sum_j w_ij = 1 and sum_j w_ij x_j = x_i, momentum and angular momentum of the nodes are kept to rounding, and a uniform strain is felt as before, in the
+ * light node's cells too. The internal force does just the work that the strain takes. Where a body is too thin for a second heavy node, the light one moves with
+ * the first (w = 1): momentum is kept, angular momentum but for m_i h.
+ * With LIGHT of a full node's mass the scheme has a limit at frozen points again: see COURANT in kernel_linear.c and test_stability_limits.c. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "mpm/body.h"
+
+static const double LIGHT = 0.15;  /* of the mass of a full node nearby: a node with less is light */
+static const double LOOKED_AT = 4; /* a full node may be heavier than at the start by this much */
+static const double LEFT = 0.5;    /* of the least mass of a heavy node is left to one that hands some on */
+
+enum { HANDED = OWN_RECORD - 1 }; /* mass that a heavy node has handed on, kg: the last place of its record */
+
+bool mpm_light_reserve(mpm_body *body, size_t tiles) {
+    if (!body->kernel->ties_light) return true;
+    if (!body->light) body->light_limit = LIGHT * LOOKED_AT * body->material->density * body->h * body->h;
+    return ab_memory_grow((void **)&body->light, &body->light_capacity, tiles, sizeof *body->light) &&
+           (body->order < 2 || ab_memory_grow((void **)&body->back, &body->back_capacity, tiles, 2 * AB_TILE_NODES * sizeof *body->back));
+}
+
+void mpm_light_destroy(mpm_body *body) {
+    ab_memory_give(body->back, body->back_capacity * 2 * AB_TILE_NODES * sizeof *body->back);
+    ab_memory_give(body->light, body->light_capacity * sizeof *body->light);
+    ab_memory_give(body->ties, body->tie_capacity * sizeof *body->ties);
+    ab_memory_give(body->lines, body->line_capacity * sizeof *body->lines);
+}
+
+/* The node that is (dx, dy) from node n of a tile, at most a tile away; UINT32_MAX where the body has none. */
+static uint32_t beside(const mpm_body *body, size_t k, int n, int dx, int dy) {
+    const int i = n % AB_TILE + dx, j = n / AB_TILE + dy, tx = i < 0 ? -1 : i >= AB_TILE, ty = j < 0 ? -1 : j >= AB_TILE;
+    const int32_t tile = body->tiles[k].around[(ty + 1) * 3 + tx + 1];
+    if (tile < 0) return UINT32_MAX;
+    return (uint32_t)tile * AB_TILE_NODES + (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE);
+}
+
+static double *record(const mpm_body *body, uint32_t dof) { return body->own + (size_t)dof * OWN_RECORD; }
+static double mass_at(const mpm_body *body, uint32_t dof) { return dof == UINT32_MAX ? 0.0 : record(body, dof)[OWN_MASS]; }
+
+static const int ROUND[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
+                                {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}; /* rows and columns, then diagonals */
+
+/* The heaviest node near the heaviest one beside the node: what a full one holds thereabouts. */
+static double full_mass(const mpm_body *body, size_t k, int n) {
+    double most = 0.0;
+    int at[2] = {0, 0};
+    for (int d = 0; d < 8; ++d) {
+        const double m = mass_at(body, beside(body, k, n, ROUND[d][0], ROUND[d][1]));
+        if (m > most) most = m, at[0] = ROUND[d][0], at[1] = ROUND[d][1];
+    }
+    double full = most;
+    for (int d = 0; d < 8; ++d) full = fmax(full, mass_at(body, beside(body, k, n, at[0] + ROUND[d][0], at[1] + ROUND[d][1])));
+    return full;
+}
+
+static bool is_heavy(const mpm_body *body, uint32_t dof) {
+    return mass_at(body, dof) > 0.0 && !(body->light[dof / AB_TILE_NODES] >> dof % AB_TILE_NODES & 1);
+}
+
+/* Lines from the node through two heavy ones, `first` .. first + 3 of ROUND; or with `near_only` to one. */
+static void tie(const mpm_body *body, size_t k, int n, double mass, double heavy, int first, bool near_only, mpm_tie *t) {
+    int lines = 0;
+    for (int d = first; d < first + 4; ++d) {
+        const uint32_t near = beside(body, k, n, ROUND[d][0], ROUND[d][1]), far = beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]);
+        if (!is_heavy(body, near)) continue;
+        if (!near_only && (!is_heavy(body, far) || mass_at(body, far) - record(body, far)[HANDED] - mass < LEFT * heavy)) continue;
+        ++lines;
+        t->to[t->count] = near, t->weight[t->count++] = near_only ? 1.0 : 2.0;
+        if (!near_only) t->to[t->count] = far, t->weight[t->count++] = -1.0;
+    }
+    for (int e = 0; e < t->count; ++e) t->weight[e] /= lines;
+}
+
+static bool find_tie(mpm_body *body, size_t k, int n, mpm_tie *t) {
+    const double mass = mass_at(body, t->dof), heavy = LIGHT * full_mass(body, k, n);
+    for (int way = 0; way < 4 && t->count == 0; ++way) tie(body, k, n, mass, heavy, way % 2 ? 4 : 0, way > 1, t);
+    return t->count > 0; /* else nothing beside it is heavier */
+}
+
+static double on_line(const mpm_tie *t, const double *velocity, size_t stride, size_t c) {
+    double line = 0.0;
+    for (int e = 0; e < t->count; ++e) line += t->weight[e] * velocity[t->to[e] * stride + c];
+    return line;
+}
+
+/* Velocities of nodes, a pair every `stride` doubles, each its own momentum over its own mass on entry (0 where a side holds it): light nodes hand their momentum to those
+ * of their lines and move onto them. That is the transpose of what the points get from the nodes, and so makes no energy. With an affine transfer they hand on only
+ * what their lines have not, p_i - m_i sum_j w_ij v_j, and a velocity that is affine in x is left as it is; what that could make, such a transfer takes. */
+static void project(mpm_body *body, double *velocity, size_t stride) {
+    const bool affine = body->finish == MPM_FINISH_AFFINE;
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        mpm_tie *t = body->ties + k;
+        const double *own = record(body, t->dof), *v = velocity + t->dof * stride;
+        for (size_t c = 0; c < 2; ++c)
+            t->rest[c] = own[OWN_INVERSE + c] != 0.0 ? own[OWN_MASS] * (v[c] - (affine ? on_line(t, velocity, stride, c) : 0.0)) : 0.0;
+    }
+    for (size_t k = 0; k < body->line_count && !affine; ++k) {
+        const double *own = record(body, body->lines[k]);
+        for (size_t c = 0; c < 2; ++c) velocity[body->lines[k] * stride + c] *= own[OWN_MASS] * own[OWN_INVERSE + c];
+    }
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        const mpm_tie *t = body->ties + k;
+        for (int e = 0; e < t->count; ++e)
+            for (size_t c = 0; c < 2; ++c)
+                velocity[t->to[e] * stride + c] += t->weight[e] * t->rest[c] * record(body, t->to[e])[OWN_INVERSE + c];
+    }
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        const mpm_tie *t = body->ties + k;
+        const double *own = record(body, t->dof);
+        for (size_t c = 0; c < 2; ++c) velocity[t->dof * stride + c] = own[OWN_INVERSE + c] != 0.0 ? on_line(t, velocity, stride, c) : 0.0;
+    }
+}
+
+/* A node's velocity by its own mass, from that by the mass which it has with those that go by it. */
+static double by_own_mass(const double *own, int c, double velocity) {
+    return own[OWN_INVERSE + c] != 0.0 ? velocity / (own[OWN_INVERSE + c] * own[OWN_MASS]) : 0.0;
+}
+
+static void hand_on(mpm_body *body) {
+    for (size_t k = 0; k < body->line_count; ++k) { /* velocities become impulses of the forces */
+        double *own = record(body, body->lines[k]);
+        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_MASS] * (own[OWN_VELOCITY + c] - own[OWN_OLD + c]);
+    }
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        const mpm_tie *t = body->ties + k;
+        const double *own = record(body, t->dof);
+        for (int e = 0; e < t->count; ++e) {
+            double *to = record(body, t->to[e]);
+            for (int c = 0; c < 2; ++c) { /* what a side holds, it takes */
+                if (own[OWN_INVERSE + c] == 0.0 || to[OWN_INVERSE + c] == 0.0) continue;
+                to[OWN_INVERSE + c] = 1.0 / (1.0 / to[OWN_INVERSE + c] + t->weight[e] * own[OWN_MASS]);
+                to[OWN_VELOCITY + c] += t->weight[e] * own[OWN_MASS] * (own[OWN_VELOCITY + c] - own[OWN_OLD + c]);
+            }
+        }
+    }
+    project(body, body->own + OWN_OLD, OWN_RECORD);
+    for (size_t k = 0; k < body->line_count; ++k) {
+        double *own = record(body, body->lines[k]);
+        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + own[OWN_VELOCITY + c] * own[OWN_INVERSE + c];
+    }
+    mpm_light_follow(body);
+}
+
+static bool add_tie(mpm_body *body, const mpm_tie *t) {
+    if (body->tie_count == body->tie_capacity &&
+        !ab_memory_grow((void **)&body->ties, &body->tie_capacity, 2 * body->tie_count + 64, sizeof *t))
+        return false;
+    if (body->line_count + 8 > body->line_capacity &&
+        !ab_memory_grow((void **)&body->lines, &body->line_capacity, 2 * body->line_count + 256, sizeof *body->lines))
+        return false;
+    body->ties[body->tie_count++] = *t;
+    for (int e = 0; e < t->count; ++e) {
+        double *to = record(body, t->to[e]);
+        if (to[HANDED] == 0.0) body->lines[body->line_count++] = t->to[e], to[HANDED] = 1e-300;
+        if (t->weight[e] < 0.0) to[HANDED] -= t->weight[e] * mass_at(body, t->dof);
+    }
+    return true;
+}
+
+ab_status mpm_light_tie(mpm_body *body, ab_report *report) {
+    for (size_t k = 0; k < body->line_count; ++k) record(body, body->lines[k])[HANDED] = 0.0;
+    body->tie_count = body->line_count = 0;
+    if (!body->kernel->ties_light) return AB_OK;
+    for (size_t k = 0; k < body->tile_count; ++k) /* which are light, before any is a degree of freedom of another */
+        for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
+            const int n = __builtin_ctzll(bits);
+            const double mass = body->own[(k * AB_TILE_NODES + (size_t)n) * OWN_RECORD + OWN_MASS];
+            if (!(mass < LIGHT * full_mass(body, k, n))) body->light[k] &= ~(UINT64_C(1) << n);
+        }
+    for (size_t k = 0; k < body->tile_count; ++k)
+        for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
+            const int n = __builtin_ctzll(bits);
+            mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n};
+            if (find_tie(body, k, n, &t) && !add_tie(body, &t))
+                return ab_report_failure(report, "body '%s': no memory for %zu light nodes", body->domain.spec->name, body->tie_count);
+        }
+    if (body->tie_count) hand_on(body);
+    return AB_OK;
+}
+
+void mpm_light_follow(mpm_body *body) {
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        const mpm_tie *t = body->ties + k;
+        double *own = record(body, t->dof);
+        for (size_t c = 0; c < 2; ++c)
+            own[OWN_VELOCITY + c] = own[OWN_INVERSE + c] != 0.0 ? on_line(t, body->own + OWN_VELOCITY, OWN_RECORD, c) : 0.0;
+    }
+}
+
+void mpm_light_quiet(mpm_body *body) {
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        double *own = record(body, body->ties[k].dof);
+        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c];
+    }
+}
+
+void mpm_light_remap(mpm_body *body) {
+    for (size_t k = 0; k < body->line_count; ++k) {
+        double *own = record(body, body->lines[k]);
+        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = by_own_mass(own, c, own[OWN_VELOCITY + c]);
+    }
+    project(body, body->own + OWN_VELOCITY, OWN_RECORD);
+}
+
+void mpm_light_filter(mpm_body *body, double *back) { project(body, back, 2); }
+
+const mpm_tie *mpm_light_tie_of(const mpm_body *body, uint32_t dof) {
+    size_t low = 0, high = body->tie_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (body->ties[middle].dof < dof)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < body->tie_count && body->ties[low].dof == dof ? body->ties + low : NULL;
+}
+
+size_t mpm_light_expand(const mpm_body *body, uint32_t *dof, double *weight, size_t count) {
+    if (!body->tie_count) return count;
+    size_t last = count;
+    for (size_t n = 0; n < last;) {
+        const mpm_tie *t = mpm_light_tie_of(body, dof[n]);
+        if (!t) {
+            ++n;
+            continue;
+        }
+        const double share = weight[n];
+        --last; /* the node makes way for those it goes by */
+        memmove(dof + n, dof + n + 1, (last - n) * sizeof *dof);
+        memmove(weight + n, weight + n + 1, (last - n) * sizeof *weight);
+        for (int e = 0; e < t->count; ++e) {
+            size_t m = 0;
+            while (m < last && dof[m] != t->to[e]) ++m;
+            if (m == last) dof[last] = t->to[e], weight[last++] = 0.0;
+            weight[m] += share * t->weight[e];
+        }
+    }
+    return last;
+}
