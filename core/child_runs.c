@@ -35,6 +35,10 @@ static ab_status begin(const ab_child_runs *runs, ab_child *child, ab_report *re
     }
     for (size_t i = 0; status == AB_OK && i < sets; i++) {
         const ab_override *o = i < runs->override_count ? &runs->overrides[i] : &child->settings[i - runs->override_count];
+        if (strcmp(o->path, AB_CHILD_THREADS) == 0) {
+            snprintf(threads, sizeof threads, "%s", o->value);
+            continue;
+        }
         const size_t size = strlen(o->path) + strlen(o->value) + 2;
         char *set = made[made_count++] = malloc(size);
         if (set == NULL) {

@@ -15,8 +15,11 @@ typedef enum ab_child_state {
     AB_CHILD_SKIPPED  /* not to be run */
 } ab_child_state;
 
-typedef struct ab_child {  /* one run */
-    ab_override *settings; /* after those that all runs share; texts are borrowed */
+#define AB_CHILD_THREADS "threads"
+
+typedef struct ab_child { /* one run */
+    ab_override
+        *settings; /* after those that all runs share; texts are borrowed. Path AB_CHILD_THREADS: of the command line, not of the scene */
     size_t setting_count;
     ab_child_state state;
     char *folder, *label, *why; /* label: "constants.cells=40, basis=gimp"; why: it is not done; one line */

@@ -31,6 +31,7 @@ static const option_text option_texts[] = {
     {AB_OPTION_JSON, "json", 0, NULL, "print JSON"},
     {AB_OPTION_VARY, "vary", 0, "PATH=VALUES",
      "values to try at PATH, separated by commas, from cheap to dear (extremes: FROM..TO, too); may be repeated"},
+    {AB_OPTION_PATH, "path", 0, NULL, "follow the best settings from the scene's own, in place of all combinations"},
     {AB_OPTION_TOLERANCE, "tolerance", 0, "ERROR", "which is the cheapest run with no larger error than this"},
     {AB_OPTION_SECONDS, "seconds", 0, "S", "which is the most accurate run that takes no more processor time than this"},
     {AB_OPTION_JOBS, "jobs", 0, "N", "runs at a time (default: 1); more disturb each other's times"},
@@ -171,6 +172,7 @@ static int read_option(const ab_command *command, const option_text *option, cha
         line->restart = value;
         return AB_OK;
     case AB_OPTION_QUIET: line->quiet = true; return AB_OK;
+    case AB_OPTION_PATH: line->path = true; return AB_OK;
     case AB_OPTION_STRICT: line->strict = true; return AB_OK;
     default: line->json = true; return AB_OK;
     }

@@ -17,13 +17,14 @@ static void add_vary(ab_text *text, const ab_override *vary, bool first) {
 
 /* The scene, read with all of --set and with --vary, --tolerance and --seconds as settings of its `trade`. */
 static ab_status read_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report) {
-    ab_override more[3];
+    ab_override more[4];
     size_t count = 0;
     ab_text vary = {0};
     for (size_t i = 0; i < line->vary_count; i++) add_vary(&vary, &line->vary[i], i == 0);
     ab_text_add(&vary, "]");
     if (line->vary_count > 0) more[count++] = (ab_override){"trade.vary", vary.bytes};
     if (line->tolerance != NULL) more[count++] = (ab_override){"trade.tolerance", line->tolerance};
+    if (line->path) more[count++] = (ab_override){"trade.search", "path"};
     if (line->seconds != NULL) more[count++] = (ab_override){"trade.seconds", line->seconds};
     ab_status status = AB_FAILED;
     if (vary.failed)
@@ -45,13 +46,12 @@ static ab_status check_values(const ab_command_line *line, const ab_scene *scene
         size_t wrong = 0;
         ab_report *first = NULL;
         for (size_t v = 0; v < ladder->value_count; v++) {
+            size_t set = line->override_count;
             for (size_t p = 0; p < ladder->path_count; p++)
-                list[line->override_count + p] = (ab_override){ladder->paths[p], ladder->values[v]};
+                if (strcmp(ladder->paths[p], AB_CHILD_THREADS) != 0) list[set++] = (ab_override){ladder->paths[p], ladder->values[v]};
             ab_report *own = ab_report_create();
             ab_scene *tried = NULL;
-            if (own != NULL &&
-                ab_scene_read(line->words[0], list, line->override_count + ladder->path_count, registry, &tried, own) != AB_OK)
-                wrong++;
+            if (own != NULL && ab_scene_read(line->words[0], list, set, registry, &tried, own) != AB_OK) wrong++;
             ab_scene_destroy(tried);
             if (first == NULL && wrong > 0)
                 first = own;
@@ -91,7 +91,8 @@ static ab_status write_scene(const ab_command_line *line, const ab_trade *trade,
     for (size_t k = 0; k < trade->spec->ladder_count; k++) {
         const ab_ladder *ladder = &trade->spec->ladders[k];
         for (size_t p = 0; p < ladder->path_count && status == AB_OK; p++)
-            status = ab_document_set(document, ladder->paths[p], ladder->values[trade->trials[chosen].rung[k]], report);
+            if (strcmp(ladder->paths[p], AB_CHILD_THREADS) != 0) /* the first line of the file says them */
+                status = ab_document_set(document, ladder->paths[p], ladder->values[trade->trials[chosen].rung[k]], report);
     }
     ab_text text = {0};
     char settings[2000];
@@ -129,8 +130,8 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
     if (status == AB_OK) status = ab_trade_run(&trade, scene, registry, report);
     const bool stopped = status > 128;
     if (status == AB_OK || stopped) { /* what is done is judged all the same */
-        ab_status judged = ab_trade_judge(&trade, scene, report);
-        if (judged == AB_OK) judged = ab_trade_write(&trade, report);
+        ab_trade_judge(&trade, report);
+        ab_status judged = ab_trade_write(&trade, report);
         if (judged == AB_OK) ab_trade_table(&trade, stdout);
         if (judged == AB_OK && line->write != NULL) {
             size_t chosen = ab_trade_cheapest(&trade, scene->trade.tolerance);

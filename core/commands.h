@@ -20,7 +20,8 @@ enum ab_option_bits { /* options a command takes */
                       AB_OPTION_LIMIT = 4096u,
                       AB_OPTION_MAP = 8192u,
                       AB_OPTION_RESTART = 1u << 16,
-                      AB_OPTION_FORCE_PLUGINS = 1u << 17
+                      AB_OPTION_FORCE_PLUGINS = 1u << 17,
+                      AB_OPTION_PATH = 16384u
 };
 
 /* A command line once it is understood. Texts are borrowed from argv. */
@@ -35,6 +36,7 @@ typedef struct ab_command_line {
     size_t override_count;
     ab_override *vary; /* --vary PATH=VALUE,VALUE,... in order */
     size_t vary_count;
+    bool path;                       /* --path */
     const char *tolerance, *seconds; /* as written; NULL: not given */
     int jobs;                        /* 0: not given */
     const char *write;               /* --write FILE */

@@ -68,4 +68,7 @@ void ab_document_write(struct ab_text *text, const ab_document *document);
  * mappings on the way too, but for entries that the user names (bodies.NAME, materials.NAME), which must exist. */
 ab_status ab_document_set(ab_document *document, const char *path, const char *value, ab_report *report);
 
+/* The value at such a path; NULL: there is none. */
+const ab_node *ab_document_get(ab_document *document, const char *path);
+
 #endif

@@ -192,3 +192,18 @@ ab_status ab_document_set(ab_document *document, const char *path, const char *v
     *at = fresh;
     return AB_OK;
 }
+
+const ab_node *ab_document_get(ab_document *document, const char *path) {
+    ab_report *own = ab_report_create(); /* what is not there is no mistake */
+    if (own == NULL) return NULL;
+    step steps[MOST_STEPS];
+    size_t count = 0;
+    ab_status status = split(document->arena, path, steps, &count, own);
+    ab_node *node = status == AB_OK ? document->root : NULL;
+    for (size_t i = 0; node != NULL && i < count; i++) {
+        ab_node **at = slot(document, node, &steps[i], path, i == 0 ? 0 : steps[i - 1].end, false, NULL, &status, own);
+        node = at != NULL ? *at : NULL;
+    }
+    ab_report_destroy(own);
+    return node;
+}

@@ -196,6 +196,8 @@ typedef struct ab_trade_spec { /* no ladders: the scene has no `trade` */
     size_t judge_count;
     double tolerance, seconds; /* of the closing sentence */
     double limit;              /* s of wall time for a run; INFINITY: none */
+    bool path;                 /* search: path */
+    bool wall;                 /* cost is wall time, not processor time */
 } ab_trade_spec;
 
 typedef struct ab_extreme { /* of `extremes`: a quantity to drive */

@@ -411,7 +411,7 @@ SECTION(checkpoint, "checkpoint", checkpoint, NULL,
         "checkpoint: {every: 0.5, wall: 30}\n");
 
 static const ab_key trade[] = {
-    [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders; every combination is run"},
+    [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders"},
     [TRADE_ERROR] = {"error", AB_KEY_SECTION,
                      .help =
                          "list of names of expects: the error of a run is the largest of theirs; default: all. A scene without expects is "
@@ -422,8 +422,13 @@ static const ab_key trade[] = {
                        .help = "the cost within which to be most accurate"},
     [TRADE_LIMIT] = {"limit", AB_KEY_NUMBER, .unit = "s", POSITIVE,
                      .help = "a run that takes longer is stopped, and dearer ones of the same ladder are not tried; default: none"},
+    [TRADE_SEARCH] = {"search", AB_KEY_WORD, .words = "all|path", .initial = "all",
+                      .help = "all: every combination of the ladders is run; path: from the scene's own settings on, those next to the best "
+                              "so far (docs/trade.md)"},
+    [TRADE_COST] = {"cost", AB_KEY_WORD, .words = "cpu|wall", .initial = "cpu",
+                    .help = "cpu: seconds of the processor, of all threads; wall: seconds until it is done, where `threads` are a ladder"},
 };
-SECTION(trade, "trade", trade, NULL, "Accuracy against cost: `abut trade SCENE` runs the scene with every combination of settings.",
+SECTION(trade, "trade", trade, NULL, "Accuracy against cost: `abut trade SCENE` runs the scene with several settings. `threads` is a setting, too.",
         "trade:\n  vary:\n    - {set: constants.cells, values: [20, 40, 80]}\n    - {name: basis, set: [bodies.a.basis, bodies.b.basis], "
         "values: [linear, gimp]}\n  tolerance: 1e-2\n  seconds: 10\n");
 

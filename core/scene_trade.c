@@ -1,10 +1,24 @@
 /* scene_trade.c: what `abut trade` is to try: ladders of settings, the expects that count, what is asked of the answer. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/scene_reader.h"
 #include "core/suggest.h"
 #include "core/trade.h"
+
+/* Threads are a setting of the command line: `-j`. */
+static void check_threads(ab_scene_reader *r, const ab_ladder *ladder) {
+    bool among = false;
+    for (size_t p = 0; p < ladder->path_count; p++) among = among || strcmp(ladder->paths[p], AB_CHILD_THREADS) == 0;
+    for (size_t i = 0; i < ladder->value_count && among; i++) {
+        char *end;
+        const long count = strtol(ladder->values[i], &end, 10);
+        if (*end != '\0' || count < 1 || count > 4096)
+            ab_report_error(r->base.report, ladder->mark, "threads: '%.64s' is no number of threads from 1 to 4096; write them as 1, 2, 4",
+                            ladder->values[i]);
+    }
+}
 
 /* A new constant may come by --set; one that no formula can know would be a ladder on which nothing changes. */
 static bool is_known(ab_scene_reader *r, const ab_node *node, const char *path, const char *text) {
@@ -69,6 +83,7 @@ static void take_ladder(ab_scene_reader *r, const ab_node *node, const char *whe
                                 ladder->values[i]);
     }
     ladder->value_count = values->count;
+    check_threads(r, ladder);
 }
 
 static void take_judges(ab_scene_reader *r, const ab_node *node, ab_trade_spec *trade) {
@@ -102,6 +117,11 @@ void ab_scene_take_trade(ab_scene_reader *r, const ab_node *node) {
     ab_read_number(&r->base, &key[TRADE_TOLERANCE], v[TRADE_TOLERANCE], "trade", &trade->tolerance);
     ab_read_number(&r->base, &key[TRADE_SECONDS], v[TRADE_SECONDS], "trade", &trade->seconds);
     ab_read_number(&r->base, &key[TRADE_LIMIT], v[TRADE_LIMIT], "trade", &trade->limit);
+    char *search = NULL, *cost = NULL;
+    ab_read_word(&r->base, &key[TRADE_SEARCH], v[TRADE_SEARCH], "trade", &search);
+    ab_read_word(&r->base, &key[TRADE_COST], v[TRADE_COST], "trade", &cost);
+    trade->path = search != NULL && strcmp(search, "path") == 0;
+    trade->wall = cost != NULL && strcmp(cost, "wall") == 0;
     if (v[TRADE_ERROR] != NULL) take_judges(r, v[TRADE_ERROR], trade);
     const ab_node *vary = v[TRADE_VARY];
     if (vary == NULL || !ab_scene_is_list(r, vary, "trade.vary", "ladders - {set: ..., values: [...]}")) return;

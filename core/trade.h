@@ -1,6 +1,7 @@
 /* trade.h: what accuracy costs: one scene run with several settings, its errors beside its cost.
  *
- * A ladder is a setting with its values, from cheap to dear; the runs (child_runs.h) are all combinations. */
+ * A ladder is a setting with its values, from cheap to dear; the runs (child_runs.h) are all combinations, or those of a walk along the front
+ * from the scene's own settings (trade_path.c). */
 #ifndef AB_TRADE_H
 #define AB_TRADE_H
 
@@ -21,6 +22,8 @@ typedef struct ab_trial { /* one run */
     double *errors;         /* per judge */
     double *values, *peaks; /* per judge: what was measured; of a monitor, its largest size in the run */
     bool front;             /* no other run is both cheaper and better */
+    bool read;              /* what it wrote has been read */
+    bool wanted, first;     /* of a walk: it is to be run, or was; it is one of those that a walk begins with */
 } ab_trial;
 
 typedef struct ab_judge { /* what errors are measured of: an expect, or a monitor's last value against the best that the runs know */
@@ -32,6 +35,8 @@ typedef struct ab_judge { /* what errors are measured of: an expect, or a monito
 typedef struct ab_trade {
     ab_child_runs runs;
     const ab_trade_spec *spec;
+    ab_report *report; /* while it runs */
+    bool stale;        /* a run has ended that a walk has not seen */
     ab_trial *trials;
     size_t count;
     ab_judge *judges;
@@ -44,13 +49,24 @@ ab_status ab_trade_plan(ab_trade *trade, ab_report *report);
 void ab_trade_clear(ab_trade *trade);
 /* Runs what is not there yet or had failed, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
 ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *registry, ab_report *report);
-/* Errors, remainders and the front from what the runs wrote. */
-ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *report);
+/* What errors are measured of; before any run. */
+ab_status ab_trade_choose_judges(ab_trade *trade, const ab_scene *scene, ab_report *report);
+/* Errors, remainders and the front from what the runs wrote; may be called again when there are more. */
+void ab_trade_judge(ab_trade *trade, ab_report *report);
+/* s of the processor or of wall time, as the trade asks. */
+double ab_trade_cost(const ab_trade *trade, const ab_trial *trial);
 /* The cheapest run with an error of at most `tolerance`, the most accurate within `seconds` of processor time; SIZE_MAX: none. */
 size_t ab_trade_cheapest(const ab_trade *trade, double tolerance);
 size_t ab_trade_most_accurate(const ab_trade *trade, double seconds);
 /* "constants.cells=40, basis=gimp" */
 const char *ab_trade_settings(const ab_trade *trade, const ab_trial *trial, char *text, size_t size);
+
+/* trade_path.c: the first runs that a walk wants, and those next to what is best so far. */
+ab_status ab_trade_walk_begin(ab_trade *trade, ab_report *report);
+void ab_trade_walk_on(ab_trade *trade);
+/* A value of a ladder of words that a walk does not try any more. */
+bool ab_trade_given_up(const ab_trade *trade, size_t ladder, size_t value);
+bool ab_ladder_is_numeric(const ab_ladder *ladder);
 
 /* trade_write.c, trade_picture.c: the table on a stream; trade.csv, trade.json, trade.svg in the folder. */
 void ab_trade_table(const ab_trade *trade, FILE *stream);

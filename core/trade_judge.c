@@ -10,7 +10,7 @@ static double number_of(const ab_node *map, const char *key) {
     return node != NULL && node->kind == AB_NODE_SCALAR && !ab_node_is_null(node) ? strtod(node->text, NULL) : NAN;
 }
 
-static ab_status choose_judges(ab_trade *trade, const ab_scene *scene, ab_report *report) {
+ab_status ab_trade_choose_judges(ab_trade *trade, const ab_scene *scene, ab_report *report) {
     const bool chosen = trade->spec->judge_count > 0, monitors = scene->expect_count == 0;
     const size_t count = chosen ? trade->spec->judge_count : monitors ? scene->monitor_count : scene->expect_count;
     if (count == 0)
@@ -179,18 +179,20 @@ static void find_front(ab_trade *trade) {
         for (size_t k = 0; k < trade->count && trial->front; k++) {
             const ab_trial *other = &trade->trials[k];
             if (k == i || other->run.state != AB_CHILD_DONE || !isfinite(other->error)) continue;
-            const bool no_worse = other->error <= trial->error && other->run.cpu <= trial->run.cpu;
-            if (no_worse && (other->error < trial->error || other->run.cpu < trial->run.cpu || k < i)) trial->front = false;
+            const double cost = ab_trade_cost(trade, trial), its = ab_trade_cost(trade, other);
+            if (other->error <= trial->error && its <= cost && (other->error < trial->error || its < cost || k < i)) trial->front = false;
         }
     }
 }
 
-ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *report) {
-    AB_TRY(choose_judges(trade, scene, report));
+double ab_trade_cost(const ab_trade *trade, const ab_trial *trial) { return trade->spec->wall ? trial->run.wall : trial->run.cpu; }
+
+void ab_trade_judge(ab_trade *trade, ab_report *report) {
     const bool monitors = trade->judges[0].monitor;
     for (size_t i = 0; i < trade->count; i++) {
         ab_trial *trial = &trade->trials[i];
-        if (trial->run.state != AB_CHILD_DONE) continue;
+        if (trial->run.state != AB_CHILD_DONE || trial->read) continue;
+        trial->read = true;
         read_summary(trade, trial, report);
         if (monitors && trial->run.state == AB_CHILD_DONE) read_history(trade, trial);
     }
@@ -199,17 +201,16 @@ ab_status ab_trade_judge(ab_trade *trade, const ab_scene *scene, ab_report *repo
         ab_trial *trial = &trade->trials[i];
         trial->error = trial->run.state == AB_CHILD_DONE ? 0 : NAN;
         for (size_t k = 0; k < trade->judge_count; k++)
-            trial->error = trial->error >= trial->errors[k] ? trial->error : trial->errors[k]; /* NaN stays: not known */
+            if (!(trial->error >= trial->errors[k]) && !isnan(trial->error)) trial->error = trial->errors[k]; /* NaN stays: not known */
     }
     find_front(trade);
-    return AB_OK;
 }
 
 size_t ab_trade_cheapest(const ab_trade *trade, double tolerance) {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < trade->count; i++)
         if (trade->trials[i].run.state == AB_CHILD_DONE && trade->trials[i].error <= tolerance &&
-            (best == SIZE_MAX || trade->trials[i].run.cpu < trade->trials[best].run.cpu))
+            (best == SIZE_MAX || ab_trade_cost(trade, &trade->trials[i]) < ab_trade_cost(trade, &trade->trials[best])))
             best = i;
     return best;
 }
@@ -217,8 +218,8 @@ size_t ab_trade_cheapest(const ab_trade *trade, double tolerance) {
 size_t ab_trade_most_accurate(const ab_trade *trade, double seconds) {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < trade->count; i++)
-        if (trade->trials[i].run.state == AB_CHILD_DONE && trade->trials[i].run.cpu <= seconds && isfinite(trade->trials[i].error) &&
-            (best == SIZE_MAX || trade->trials[i].error < trade->trials[best].error))
+        if (trade->trials[i].run.state == AB_CHILD_DONE && ab_trade_cost(trade, &trade->trials[i]) <= seconds &&
+            isfinite(trade->trials[i].error) && (best == SIZE_MAX || trade->trials[i].error < trade->trials[best].error))
             best = i;
     return best;
 }

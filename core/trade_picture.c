@@ -21,7 +21,7 @@ static axis axis_of(double least, double most, double from, double to) {
     return a;
 }
 
-static void grid(ab_text *svg, const axis *x, const axis *y) {
+static void grid(ab_text *svg, const axis *x, const axis *y, bool wall) {
     char label[32];
     for (double d = x->low; d <= x->high; d++) {
         const double at = place(x, pow(10, d));
@@ -35,20 +35,22 @@ static void grid(ab_text *svg, const axis *x, const axis *y) {
         snprintf(label, sizeof label, "1e%g", d);
         ab_picture_words(svg, x->from - 8, at + 4, "end", label);
     }
-    ab_picture_words(svg, 0.5 * (x->from + x->to), y->from + 42, "middle", "processor time, s");
+    ab_picture_words(svg, 0.5 * (x->from + x->to), y->from + 42, "middle", wall ? "wall time, s" : "processor time, s");
     ab_text_add(svg, "<g transform=\"translate(22 %.1f) rotate(-90)\">", 0.5 * (y->from + y->to));
     ab_picture_words(svg, 0, 0, "middle", "error");
     ab_text_add(svg, "</g>\n");
 }
 
-static bool shown(const ab_trial *trial) { return trial->run.state == AB_CHILD_DONE && isfinite(trial->error) && trial->run.cpu > 0; }
+static bool shown(const ab_trade *trade, const ab_trial *trial) {
+    return trial->run.state == AB_CHILD_DONE && isfinite(trial->error) && ab_trade_cost(trade, trial) > 0;
+}
 
 void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
     for (size_t i = 0; i < trade->count; i++) {
         const ab_trial *t = &trade->trials[i];
-        if (!shown(t)) continue;
-        low[0] = fmin(low[0], t->run.cpu), high[0] = fmax(high[0], t->run.cpu);
+        if (!shown(trade, t)) continue;
+        low[0] = fmin(low[0], ab_trade_cost(trade, t)), high[0] = fmax(high[0], ab_trade_cost(trade, t));
         if (t->error > 0) low[1] = fmin(low[1], t->error), high[1] = fmax(high[1], t->error);
     }
     ab_picture_begin(svg, WIDE, HIGH);
@@ -60,7 +62,7 @@ void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     }
     if (!(high[1] > 0)) low[1] = 1e-16, high[1] = 1e-15;
     const axis x = axis_of(low[0], high[0], LEFT, WIDE - RIGHT), y = axis_of(low[1], high[1], HIGH - BELOW, ABOVE);
-    grid(svg, &x, &y);
+    grid(svg, &x, &y, trade->spec->wall);
     if (trade->spec->tolerance > pow(10, y.low) && trade->spec->tolerance < pow(10, y.high))
         ab_picture_line(svg, x.from, place(&y, trade->spec->tolerance), x.to, place(&y, trade->spec->tolerance),
                         "stroke:#999;stroke-dasharray:6 4");
@@ -70,12 +72,12 @@ void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     for (;;) {
         const ab_trial *next = NULL;
         for (size_t i = 0; i < trade->count; i++)
-            if (trade->trials[i].front && shown(&trade->trials[i]) && trade->trials[i].run.cpu > cost &&
-                (next == NULL || trade->trials[i].run.cpu < next->run.cpu))
+            if (trade->trials[i].front && shown(trade, &trade->trials[i]) && ab_trade_cost(trade, &trade->trials[i]) > cost &&
+                (next == NULL || ab_trade_cost(trade, &trade->trials[i]) < ab_trade_cost(trade, next)))
                 next = &trade->trials[i];
         if (next == NULL) break;
-        cost = next->run.cpu;
-        const double at[2] = {place(&x, next->run.cpu), place(&y, next->error > 0 ? next->error : pow(10, y.low))};
+        cost = ab_trade_cost(trade, next);
+        const double at[2] = {place(&x, ab_trade_cost(trade, next)), place(&y, next->error > 0 ? next->error : pow(10, y.low))};
         if (isfinite(before[0])) {
             ab_picture_line(svg, before[0], before[1], at[0], before[1], "stroke:#c22;stroke-width:1.5");
             ab_picture_line(svg, at[0], before[1], at[0], at[1], "stroke:#c22;stroke-width:1.5");
@@ -88,11 +90,11 @@ void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     }
     for (size_t i = 0; i < trade->count; i++) {
         const ab_trial *t = &trade->trials[i];
-        if (!shown(t)) continue;
-        ab_text_add(svg, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"><title>", place(&x, t->run.cpu),
+        if (!shown(trade, t)) continue;
+        ab_text_add(svg, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"><title>", place(&x, ab_trade_cost(trade, t)),
                     place(&y, t->error > 0 ? t->error : pow(10, y.low)), t->front ? "#c22" : "#468");
         ab_text_add_xml(svg, ab_trade_settings(trade, t, settings, sizeof settings));
-        ab_text_add(svg, ": error %.2g, %.3g s</title></circle>\n", t->error, t->run.cpu);
+        ab_text_add(svg, ": error %.2g, %.3g s</title></circle>\n", t->error, ab_trade_cost(trade, t));
     }
     ab_picture_end(svg);
 }

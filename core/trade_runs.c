@@ -1,4 +1,4 @@
-/* trade_runs.c: the runs of a trade: every combination of settings. */
+/* trade_runs.c: the runs of a trade: which are made, and in which order. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,7 +50,7 @@ void ab_trade_clear(ab_trade *trade) {
     trade->count = trade->judge_count = 0;
 }
 
-static bool is_numeric(const ab_ladder *ladder) {
+bool ab_ladder_is_numeric(const ab_ladder *ladder) {
     for (size_t i = 0; i < ladder->value_count; i++) {
         char *end;
         strtod(ladder->values[i], &end);
@@ -66,7 +66,7 @@ static void skip_dearer(ab_trade *trade, const ab_trial *slow) {
         if (trial->run.state != AB_CHILD_WAITING) continue;
         bool dearer = true;
         for (size_t k = 0; k < trade->spec->ladder_count && dearer; k++)
-            dearer = is_numeric(&trade->spec->ladders[k]) ? trial->rung[k] >= slow->rung[k] : trial->rung[k] == slow->rung[k];
+            dearer = ab_ladder_is_numeric(&trade->spec->ladders[k]) ? trial->rung[k] >= slow->rung[k] : trial->rung[k] == slow->rung[k];
         if (!dearer) continue;
         char settings[600], why[800];
         trial->run.state = AB_CHILD_SKIPPED;
@@ -78,10 +78,15 @@ static void skip_dearer(ab_trade *trade, const ab_trial *slow) {
 /* The cheapest that waits: the lowest on all ladders together. */
 static ab_child *next(void *owner) {
     ab_trade *trade = owner;
+    if (trade->spec->path && trade->stale) {
+        ab_trade_judge(trade, trade->report);
+        ab_trade_walk_on(trade);
+        trade->stale = false;
+    }
     ab_child *best = NULL;
     size_t least = SIZE_MAX;
     for (size_t i = 0; i < trade->count; i++) {
-        if (trade->trials[i].run.state != AB_CHILD_WAITING) continue;
+        if (trade->trials[i].run.state != AB_CHILD_WAITING || (trade->spec->path && !trade->trials[i].wanted)) continue;
         size_t height = 0;
         for (size_t k = 0; k < trade->spec->ladder_count; k++) height += trade->trials[i].rung[k];
         if (height < least) least = height, best = &trade->trials[i].run;
@@ -91,19 +96,26 @@ static ab_child *next(void *owner) {
 
 static void ended(void *owner, ab_child *child) {
     ab_trade *trade = owner;
+    trade->stale = true;
     for (size_t i = 0; i < trade->count && child->state == AB_CHILD_LIMIT; i++)
         if (&trade->trials[i].run == child) skip_dearer(trade, &trade->trials[i]);
 }
 
 static size_t count_ended(void *owner, size_t *expected) {
     const ab_trade *trade = owner;
-    size_t count = 0;
-    for (size_t i = 0; i < trade->count; i++) count += trade->trials[i].run.state >= AB_CHILD_DONE;
-    *expected = trade->count;
+    size_t count = 0, wanted = 0;
+    for (size_t i = 0; i < trade->count; i++) {
+        count += trade->trials[i].run.state >= AB_CHILD_DONE;
+        wanted += trade->trials[i].wanted || trade->trials[i].run.state != AB_CHILD_WAITING;
+    }
+    *expected = trade->spec->path ? wanted : trade->count; /* of a walk: as far as is known */
     return count;
 }
 
 ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *registry, ab_report *report) {
+    AB_TRY(ab_trade_choose_judges(trade, scene, report));
+    trade->report = report;
+    if (trade->spec->path) AB_TRY(ab_trade_walk_begin(trade, report));
     trade->runs.owner = trade;
     trade->runs.next = next;
     trade->runs.ended = ended;

@@ -13,7 +13,8 @@ static int by_cost(const void *a, const void *b) {
     const ab_trial *x = &sorting->trials[*(const size_t *)a], *y = &sorting->trials[*(const size_t *)b];
     const bool x_done = x->run.state == AB_CHILD_DONE, y_done = y->run.state == AB_CHILD_DONE;
     if (x_done != y_done) return x_done ? -1 : 1;
-    if (x_done && x->run.cpu != y->run.cpu) return x->run.cpu < y->run.cpu ? -1 : 1;
+    if (x_done && ab_trade_cost(sorting, x) != ab_trade_cost(sorting, y))
+        return ab_trade_cost(sorting, x) < ab_trade_cost(sorting, y) ? -1 : 1;
     return *(const size_t *)a < *(const size_t *)b ? -1 : 1;
 }
 static size_t *sorted(const ab_trade *trade) {
@@ -49,14 +50,29 @@ static void sentence(const ab_trade *trade, FILE *stream) {
         fprintf(stream, "No run has an error of %g or less", trade->spec->tolerance);
     else
         fprintf(stream, "The cheapest within an error of %g is %s (%.3g s, error %.2g)", trade->spec->tolerance,
-                ab_trade_settings(trade, &trade->trials[cheap], settings, sizeof settings), trade->trials[cheap].run.cpu,
+                ab_trade_settings(trade, &trade->trials[cheap], settings, sizeof settings), ab_trade_cost(trade, &trade->trials[cheap]),
                 trade->trials[cheap].error);
     if (good == SIZE_MAX)
         fprintf(stream, "; no run with a known error takes %g s or less.\n", trade->spec->seconds);
     else
         fprintf(stream, "; the most accurate within %g s is %s (%.3g s, error %.2g).\n", trade->spec->seconds,
-                ab_trade_settings(trade, &trade->trials[good], settings, sizeof settings), trade->trials[good].run.cpu,
+                ab_trade_settings(trade, &trade->trials[good], settings, sizeof settings), ab_trade_cost(trade, &trade->trials[good]),
                 trade->trials[good].error);
+}
+
+/* What a walk left out, and why. */
+static void path_notes(const ab_trade *trade, size_t wanted, FILE *stream) {
+    fprintf(stream, "  %zu of %zu combinations were run: a path from the scene's own settings along the front\n", wanted, trade->count);
+    for (size_t k = 0; k < trade->spec->ladder_count; k++)
+        for (size_t v = 0; v < trade->spec->ladders[k].value_count; v++)
+            if (ab_trade_given_up(trade, k, v))
+                fprintf(stream, "  %s=%s was beaten, or broke off, wherever it was tried, and was given up\n", trade->spec->ladders[k].name,
+                        trade->spec->ladders[k].values[v]);
+    size_t dear = 0;
+    for (size_t i = 0; i < trade->count; i++)
+        dear += trade->trials[i].front && ab_trade_cost(trade, &trade->trials[i]) > trade->spec->seconds;
+    if (dear > 0 && ab_trade_cheapest(trade, trade->spec->tolerance) != SIZE_MAX)
+        fprintf(stream, "  steps beyond runs of more than %g s were not taken: the tolerance is met for less\n", trade->spec->seconds);
 }
 
 void ab_trade_table(const ab_trade *trade, FILE *stream) {
@@ -67,6 +83,7 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
     fprintf(stream, "%10s  %10s  %9s  %8s  %10s  worst\n", "error", "cpu, s", "wall, s", "MB", "remainder");
     for (size_t i = 0; order != NULL && i < trade->count; i++) {
         const ab_trial *trial = &trade->trials[order[i]];
+        if (trade->spec->path && !trial->wanted) continue; /* said below the table */
         fprintf(stream, "%s ", trial->front ? "*" : " ");
         for (size_t k = 0; k < trade->spec->ladder_count; k++) {
             const int width = width_of(trade, k);
@@ -91,7 +108,10 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
     if (trade->judge_count > 6) fprintf(stream, " and %zu more", trade->judge_count - 6);
     fprintf(stream, "\n");
     if (trade->reference[0] != '\0') fprintf(stream, "  %s\n", trade->reference);
-    if (left > 0) fprintf(stream, "  %zu of %zu runs have no answer\n", left, trade->count);
+    size_t wanted = 0;
+    for (size_t i = 0; i < trade->count; i++) wanted += trade->trials[i].wanted;
+    if (left > 0) fprintf(stream, "  %zu of %zu runs have no answer\n", left, trade->spec->path ? wanted : trade->count);
+    if (trade->spec->path) path_notes(trade, wanted, stream);
     sentence(trade, stream);
 }
 
@@ -144,6 +164,7 @@ static void json_settings(const ab_trade *trade, const ab_trial *trial, ab_text 
 static void write_json(const ab_trade *trade, ab_text *text) {
     ab_text_add(text, "{\n  \"scene\": ");
     ab_text_add_escaped(text, trade->runs.scene);
+    ab_text_add(text, ",\n  \"search\": \"%s\", \"cost\": \"%s\"", trade->spec->path ? "path" : "all", trade->spec->wall ? "wall" : "cpu");
     ab_text_add(text, ",\n  \"reference\": ");
     ab_text_add_escaped(text, trade->reference);
     json_number(text, "tolerance", trade->spec->tolerance);

@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 12
+# cost: 18
 # abut trade: the front and the sentence against what the runs themselves say, runs that are there already, failures, limits, signals, bad input. test_trade.sh BUILD
 set -u
 build=$(realpath "${1:?the build folder}")
@@ -49,6 +49,33 @@ assert max(abs(e['error']) for e in json.load(open('best/summary.json'))['expect
 must "runs that are there are not run again" says 0 "9 of 9 .*done before" "$build/abut" trade "$bar" --vary constants.cells=12,25,50 --vary "$basis" -o bar
 sed 's/v0: 1e-4/v0: 2e-4/' "$bar" >other.yaml
 must "runs of another scene are" bash -c "'$build/abut' trade other.yaml --vary constants.cells=12 -o bar 2>&1 | grep -q '1 of 1.*done, '"
+
+ladders=(--vary constants.cells=12,25,50 --vary bodies.bar.basis=linear,gimp,bspline2,bspline3 --vary bodies.bar.transfer='flip,{flip: 0.9},pic,{xpic: 2}' --set 'constants.end=2*2*pi/w')
+must "all combinations" says 0 "cheapest within" "$build/abut" trade "$bar" "${ladders[@]}" -o walk --seconds 0.1
+cp walk/trade.json all.json
+must "a path through them" says 0 "of 48 combinations were run" "$build/abut" trade "$bar" "${ladders[@]}" -o walk --path --seconds 0.1
+must "ends where all of them end, with fewer runs" python3 - <<'PYTHON'
+import json
+every, path = json.load(open("all.json")), json.load(open("walk/trade.json"))
+runs = [[r for r in t["runs"] if r["outcome"] == "done"] for t in (every, path)]
+cost = [sum(r["cpu_seconds"] for r in side) for side in runs]
+print(f"        {len(runs[1])} of {len(runs[0])} runs, {cost[1]:.2f} of {cost[0]:.2f} s")
+assert path["search"] == "path" and len(runs[0]) == 48 and len(runs[1]) <= 36 and cost[1] < 0.85 * cost[0]
+for end in ("cheapest", "most_accurate"): # the same run, or one that no clock tells from it
+    a, b = (next(r for r in t["runs"] if r["settings"] == t[end]) for t in (every, path))
+    assert a is b or (b["error"] <= 1.1 * a["error"] and b["cpu_seconds"] <= 1.1 * a["cpu_seconds"]), (end, a, b)
+PYTHON
+must "what was given up is said" grep -q "transfer=pic was beaten, or broke off, wherever it was tried" said
+must "threads are a ladder" says 0 "cheapest within" "$build/abut" trade "$bar" --vary threads=1,2 --set constants.cells=25 --set trade.cost=wall -o threads --tolerance 1 --write threads.yaml
+must "and are used" python3 -c "
+import json
+runs = json.load(open('threads/trade.json'))['runs']
+assert [json.load(open(r['folder'] + '/summary.json'))['threads'] for r in runs] == [1, 2] and runs[0]['error'] == runs[1]['error'], runs"
+must "the scene with them runs" "$build/abut" check threads.yaml
+must "threads that are none" says 2 "no number of threads" "$build/abut" trade "$bar" --vary threads=1,many -o never
+must "elements, algorithm, response, normal and cfl are ladders" says 0 "16 of 32 runs have no answer" "$build/abut" trade "$here/impact_mpm_fe.yaml" --set constants.cells=8 \
+    --vary bodies.b.mesh.type=q4r,q4 --vary 'contact[0].algorithm=multi-velocity,point-to-segment' --vary 'contact[0].response=coulomb,frictionless' \
+    --vary 'contact[0].normal=average,volume-gradient' --vary time.cfl=0.4,0.2 -o many
 
 cat >plain.yaml <<'SCENE' # without expects: the last values of the monitors tend to a limit
 abut: 1
