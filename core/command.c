@@ -14,6 +14,7 @@
 
 static int command_plugins(const ab_command_line *line) {
     if (line->word_count && !strcmp(line->words[0], "new")) return ab_command_plugin_new(line);
+    if (line->word_count && !strcmp(line->words[0], "check")) return ab_command_plugin_check(line);
     char *words[8] = {(char[]){"plugins"}};
     for (int i = 0; i < line->word_count; i++) words[i + 1] = line->words[i];
     return ab_command_plugins(line->word_count + 1, words, line->plugin_path);
@@ -50,20 +51,24 @@ static const ab_command commands[] = {
          AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE | AB_OPTION_PATH,
      1, 1, ab_command_trade},
     {"extremes", "SCENE", "how far quantities go: where a run stops being right, where it stops being stable, from where it is refused",
-     "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is driven on "
+     "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is driven "
+     "on "
      "its own: a ladder of runs first,\nthen halves where the verdict changes. What was run before with the same scene is not run again. "
      "extremes.csv, extremes.json and, with a map, map.svg land in\nthe results folder. --strict: exit 3 where a quantity does not hold.\n"
      "  abut extremes tests/verification/bar_1.yaml --vary time.cfl=0.1..1.2",
      AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_STRICT | AB_OPTION_VARY |
          AB_OPTION_JOBS | AB_OPTION_LIMIT | AB_OPTION_MAP,
      1, 1, ab_command_extremes},
-    {"plugins", "[show NAME | new KIND NAME]",
+    {"plugins", "[show NAME | new KIND NAME | check NAME]",
      "list the plugins found, tell all about one (settings with unit, range, default), or begin one",
      "Plugins are looked for in --plugin-path, in $ABUT_PLUGIN_PATH, then among those that came with abut.\n"
      "  abut plugins new KIND NAME     writes a plugin that works, to be changed: source, CMakeLists.txt and a scene; KIND is material, "
      "finder or\n"
-     "                                 response (of contact). Into the folder NAME, or -o; nothing that is there is overwritten",
-     AB_OPTION_PLUGIN_PATH | AB_OPTION_OUTPUT, 0, 3, command_plugins},
+     "                                 response (of contact). Into the folder NAME, or -o; nothing that is there is overwritten\n"
+     "  abut plugins check FILE.so     (or the name of a class) tries the promises that abut_plugin.h asks of plugins, one per line; --set "
+     "KEY=VALUE\n"
+     "                                 gives a setting, in SI. Exit 1 where one is broken",
+     AB_OPTION_PLUGIN_PATH | AB_OPTION_OUTPUT | AB_OPTION_SET, 0, 3, command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
     {.name = NULL},

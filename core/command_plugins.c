@@ -159,8 +159,7 @@ int ab_command_plugins(int argc, char **argv, const char *plugin_path) {
     if (status == AB_OK && argc > 1 && strcmp(argv[1], "show") != 0)
         status = ab_report_error(
             report, AB_NOWHERE,
-            "unknown word '%s' behind `abut plugins`; write `abut plugins`, `abut plugins show NAME` or `abut plugins new KIND NAME`",
-            argv[1]);
+            "unknown word '%s' behind `abut plugins`; write `abut plugins`, or behind it show NAME, new KIND NAME or check NAME", argv[1]);
     else if (status == AB_OK && argc > 1 && argc != 3)
         status = ab_report_error(report, AB_NOWHERE, "`abut plugins show` takes one name; `abut plugins` lists them");
     if (status == AB_OK) status = ab_registry_create(plugin_path, &registry, report);

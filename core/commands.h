@@ -89,4 +89,7 @@ int ab_command_plugins(int argc, char **argv, const char *plugin_path);
 /* `abut plugins new KIND NAME`: core/command_plugin_new.c; words[0] is "new". */
 int ab_command_plugin_new(const ab_command_line *line);
 
+/* `abut plugins check FILE.so|NAME`: core/check.c; words[0] is "check". */
+int ab_command_plugin_check(const ab_command_line *line);
+
 #endif
