@@ -14,7 +14,7 @@
 
 #include "core/plugin_load.h"
 
-enum { SECONDS = 4, WALL_SECONDS = 120, MEMORY = 1 << 30 };
+enum { SECONDS = 3, WALL_SECONDS = 120, MEMORY = 1 << 30 };
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define UNLIMITED 1 /* their shadows are larger than any limit */
 #elif defined(__has_feature)

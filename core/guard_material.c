@@ -37,7 +37,8 @@ static int look(ab_guard *guard, const char *name, const double *array, int rows
                 return ab_guard_break(guard, AB_PROMISE_ARRAYS, "it wrote row %d of %s for item %zu, and the batch has %zu", r, name, i,
                                       b->count);
         for (size_t i = 0; i < b->count; i++) {
-            if (isfinite(row[i])) continue;
+            if (isfinite(row[i]) || (b->density && !(b->density[i] > 0.0)))
+                continue; /* items without mass fill a batch up: nobody looks at theirs */
             b->flag[i] = 1;
             return ab_guard_poisoned(row[i])
                        ? ab_guard_break(guard, AB_PROMISE_FINITE, "row %d of %s was not written for item %zu of %zu at t = %g s", r, name,

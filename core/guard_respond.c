@@ -25,7 +25,8 @@ enum {
     POINT_STATE0,
     IMPULSE,
     POINT_STATE1,
-    STIFFNESS
+    STIFFNESS,
+    IMPULSE_BEFORE
 };
 
 typedef struct response_call {
@@ -119,6 +120,35 @@ static int take_rows(ab_guard *guard, const ab_points *p, const point_rows *k, s
     return 0;
 }
 
+/* Alone, a point whose bodies do not overlap takes energy from them: with v the relative velocity without its impulse j and v - j/m the one with it, j (v + v - j/m)/2
+ * is not negative. A response that acts as a spring may give back what it took, and one that parts bodies that overlap has to. */
+static int look_at_energy(ab_guard *guard, const ab_points *p, const double *before, size_t first, size_t count) {
+    static const double ROUNDING = 1e-9;
+    const size_t ld = p->ld, d = p->dimension;
+    for (size_t i = first; i < first + count; i++) {
+        const double mn = p->normal_mass[i], mt = p->tangential_mass[i];
+        if (p->gap[i] < 0.0 || !(mn > 0.0) || !(mt > 0.0) || (p->stiffness && p->stiffness[i] > 0.0)) continue;
+        double vn = 0.0, on = 0.0, jn = 0.0, work = 0.0, scale = 0.0;
+        for (size_t c = 0; c < d; c++) {
+            const double n = p->normal[c * ld + i];
+            vn += p->relative_velocity[c * ld + i] * n, on += before[c * count + i - first] * n, jn += p->impulse[c * ld + i] * n;
+        }
+        for (size_t c = 0; c < d; c++) {
+            const double n = p->normal[c * ld + i], old = before[c * count + i - first], j = p->impulse[c * ld + i];
+            const double free = p->relative_velocity[c * ld + i] + on * n / mn + (old - on * n) / mt,
+                         with = free - jn * n / mn - (j - jn * n) / mt;
+            work += 0.5 * j * (free + with);
+            scale += fabs(j) * (fabs(free) + fabs(with) + fabs(j) / mt + fabs(j) / mn);
+        }
+        if (work >= -ROUNDING * scale) continue;
+        return ab_guard_break(guard, AB_PROMISE_DISSIPATION,
+                              "by itself its impulse (%g, %g) N s gives the bodies %g J, at point %zu at (%g, %g) m from the grid's "
+                              "corner, gap %g m, t = %g s",
+                              p->impulse[i], p->impulse[ld + i], -work, i, p->position[i], p->position[ld + i], p->gap[i], p->time);
+    }
+    return 0;
+}
+
 int ab_guard_respond(void *self, ab_points *points, size_t first, size_t count) {
     ab_guard *guard = self;
     const size_t states = (size_t)ab_guard_state_rows(&guard->inner->class_, points->dimension);
@@ -143,6 +173,10 @@ int ab_guard_respond(void *self, ab_points *points, size_t first, size_t count) 
                               points->time);
     const char *before = all ? ab_guard_underrun(set) : NULL;
     if (before) return ab_guard_break(guard, AB_PROMISE_ARRAYS, "it wrote before the start of %s, t = %g s", before, points->time);
+    if (code != 0) return code;
+    double *old = ab_guard_room(set, IMPULSE_BEFORE, "impulse before", points->dimension * count * sizeof *old, false, &old);
+    if (!old) return ab_guard_no_memory(guard);
+    for (size_t r = 0; r < points->dimension; r++) memcpy(old + r * count, points->impulse + r * points->ld + first, count * sizeof *old);
     for (size_t k = WRITTEN; code == 0 && k < ROWS; k++) code = take_rows(guard, points, rows + k, first, count, all);
-    return code;
+    return code != 0 ? code : look_at_energy(guard, points, old, first, count);
 }

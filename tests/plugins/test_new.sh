@@ -40,6 +40,7 @@ for kind in material finder response; do
     cd own-$kind || exit 1
     cc -std=c11 -Wall -Wextra -Wshadow -Werror -shared -fPIC -I"$header" $file.c -o strict.so -lm || say "$file.c has warnings"
     { cmake -S . -B build -DCMAKE_PREFIX_PATH="$scratch/prefix" && cmake --build build; } >built.txt 2>&1 || say "$file.c is not built: $(cat built.txt)"
+    "$build/abut" plugins check build/$file.so >checked.txt 2>&1 || say "$file.so fails its check: $(cat checked.txt)"
     for checked in false true; do
         "$build/abut" run $file.yaml --strict --quiet --plugin-path build -j 1 --set checked=$checked -o out_$checked >ran.txt 2>&1 || say "$file.yaml, checked $checked: $(cat ran.txt)"
         [ ! -s ran.txt ] || say "$file.yaml, checked $checked, says: $(cat ran.txt)"
