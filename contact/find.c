@@ -92,6 +92,11 @@ static void describe(ab_trace *trace, const ab_domain *body, double cell) {
     *trace = (ab_trace){.struct_size = sizeof *trace, .dimension = 2, .body = body->spec->name, .stiffness = modulus(body), .cell = cell};
 }
 
+/* Lengths in the plane become areas of rings: 2 pi r; about the axis that of the disc which a length from there sweeps. */
+static void make_rings(ab_points *p) {
+    for (size_t i = 0; i < p->count; ++i) p->area[i] *= ab_circumference(fmax(p->position[i], 0.5 * p->area[i]));
+}
+
 ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
@@ -130,6 +135,7 @@ ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *repor
     const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
     if (code != 0) return contact_complain(pair, &pair->finder_service, "find", code, report);
     pair->failures += p->failures;
+    if (points->axisymmetric) make_rings(p);
     if (needs & AB_NEED_SURFACE) contact_watch_depth(pair, report);
     return AB_OK;
 }

@@ -32,25 +32,39 @@ void ab_scene_take_axis(ab_scene_reader *r, ab_mark mark) {
 }
 
 static void check_body(ab_scene_reader *r, const ab_body_spec *body) {
-    const ab_scene *scene = r->scene;
     double low[2], high[2];
     if (ab_body_bounds(body, low, high) && low[0] < -1e-9 * (high[0] - low[0]))
         ab_report_error(r->base.report, body->mark,
                         "body '%s' reaches to x = %.10g m, but in an axisymmetric scene x is the radius; draw the half right of the axis",
                         body->name, low[0]);
-    if (body->method != NULL && strcmp(body->method, "finite-elements") == 0 && scene->grid_cell > 0.0 && scene->grid_from[0] > 0.0)
-        ab_report_error(
-            r->base.report, body->mark,
-            "body '%s' of finite elements: the grid of an axisymmetric scene must begin at the axis then; write grid.from: [0, %.10g]",
-            body->name, scene->grid_from[1]);
-    if (body->method != NULL && strcmp(body->method, "rigid") == 0)
-        ab_report_error(r->base.report, body->mark,
-                        "body '%s': method %s is not there yet in axisymmetric scenes; use material-points or finite-elements", body->name,
-                        body->method);
+    if (body->surface_points > 0.0)
+        ab_report_error(r->base.report, body->mark, "bodies.%s.surface: points on the outline are not there yet in axisymmetric scenes; leave the key out",
+                        body->name);
     if (body->basis != NULL && strcmp(body->basis, "cpdi") == 0)
         ab_report_error(r->base.report, body->mark,
                         "bodies.%s.basis: cpdi is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",
                         body->name);
+}
+
+static bool is_points(const ab_body_spec *body) { return body->method != NULL && strcmp(body->method, "material-points") == 0; }
+
+static void check_contact(ab_scene_reader *r, size_t number) {
+    const ab_contact_spec *contact = &r->scene->contacts[number];
+    const ab_body_spec *a = &r->scene->bodies[contact->body[0]], *b = &r->scene->bodies[contact->body[1]];
+    if (contact->finder != NULL && (contact->finder->class_.needs & AB_NEED_SURFACE) && is_points(a) && is_points(b))
+        ab_report_error(r->base.report, contact->mark,
+                        "contact[%zu]: '%s' between two bodies of points is not there yet in axisymmetric scenes; use multi-velocity", number,
+                        contact->finder->class_.name);
+}
+
+void ab_scene_hold_radius(ab_scene_reader *r, ab_body_spec *body) {
+    if (r->scene->space != AB_SPACE_AXISYMMETRIC) return;
+    ab_motion_spec *motion = &body->motion;
+    const bool aside = motion->has[0] && (motion->velocity[0].expression != NULL || motion->velocity[0].value != 0.0);
+    if (aside || (motion->has_spin && (motion->spin.expression != NULL || motion->spin.value != 0.0)))
+        ab_report_error(r->base.report, aside ? motion->velocity[0].mark : motion->spin.mark,
+                        "bodies.%s.motion: a rigid body moves along the axis only in an axisymmetric scene; write velocity: [0, vy] and leave spin out", body->name);
+    motion->has[0] = motion->has_spin = true; /* held at 0 */
 }
 
 void ab_scene_check_axisymmetric(ab_scene_reader *r) {
@@ -63,6 +77,14 @@ void ab_scene_check_axisymmetric(ab_scene_reader *r) {
                         "body_force for a force "
                         "along the radius");
     for (size_t b = 0; b < scene->body_count; b++) check_body(r, &scene->bodies[b]);
-    for (size_t c = 0; c < scene->contact_count; c++)
-        ab_report_error(r->base.report, scene->contacts[c].mark, "contact[%zu]: contact is not there yet in axisymmetric scenes", c);
+    for (size_t c = 0; c < scene->contact_count; c++) check_contact(r, c);
+    if (scene->grid_cell > 0.0 && scene->grid_from[0] > 0.0)
+        for (size_t b = 0; b < scene->body_count; b++) {
+            if (scene->contact_count == 0 && (scene->bodies[b].method == NULL || strcmp(scene->bodies[b].method, "material-points") == 0)) continue;
+            ab_report_error(r->base.report, scene->mark_grid,
+                            "grid.from is %.10g m along x; with finite elements, rigid bodies or contact the grid of an axisymmetric scene begins at the axis, 0 (cells "
+                            "without material cost nothing)",
+                            scene->grid_from[0]);
+            break;
+        }
 }

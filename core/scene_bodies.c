@@ -256,6 +256,7 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
     if (method == POINTS) take_points(r, v, where, body);
     if (v[BODY_FIX] != NULL) ab_scene_take_fix(r, v[BODY_FIX], ab_where_join(path, where, "fix"), body);
     if (v[BODY_MOTION] != NULL) ab_scene_take_motion(r, v[BODY_MOTION], ab_where_join(path, where, "motion"), body);
+    if (method == RIGID) ab_scene_hold_radius(r, body);
     if (method == RIGID && v[BODY_MATERIAL] == NULL) ab_scene_check_mass(r, body, where);
 }
 

@@ -55,6 +55,8 @@ bool ab_body_bounds(const ab_body_spec *body, double low[2], double high[2]);
 void ab_scene_check_grid(ab_scene_reader *reader, const ab_node *root);
 /* In axisymmetric scenes. The grid's left side: a roller where it is the axis. After bodies and contacts: what cannot be, or is not there yet. */
 void ab_scene_take_axis(ab_scene_reader *reader, ab_mark mark);
+/* A rigid body: it moves along the axis only. */
+void ab_scene_hold_radius(ab_scene_reader *reader, ab_body_spec *body);
 void ab_scene_check_axisymmetric(ab_scene_reader *reader);
 /* AB_PLANE_STRAIN or AB_AXISYMMETRIC: what a plugin must be able to do for this scene; and its name. */
 uint32_t ab_scene_space(const ab_scene *scene, const char **name);

@@ -63,7 +63,9 @@ typedef struct fem_outer { /* the outer faces, for contact */
     size_t *start;        /* 0, 1, 2, ...: each stands for itself */
     uint32_t *dof;        /* faces->node */
     double *weight;       /* 1 */
-    uint32_t *vertex;     /* faces->vertex by place */
+    size_t face_count;    /* those of faces but, in axisymmetric scenes, what lies on the axis */
+    uint32_t *vertex;     /* their vertices by place */
+    uint32_t *beside;     /* 2 a face */
     double *vertex_place; /* rows of faces->node_count */
     double *area;         /* by place */
     uint64_t *key;        /* of the points last asked for */

@@ -168,16 +168,18 @@ static void fill_element(fem_body *body, size_t k, bool inmost) {
     const uint32_t *node = body->mesh->connectivity + e * nodes;
     double volume = 0.0, mass = 0.0;
     for (size_t q = first; q < last; ++q) {
-        double edge[2][2] = {{0.0}};
+        double edge[2][2] = {{0.0}}, radius = 0.0;
         for (size_t a = 0; a < nodes; ++a) {
             const size_t at = a * cut->ld + q - first;
             for (size_t d = 0; d < 2; ++d)
                 for (size_t c = 0; c < 2; ++c) edge[d][c] += cut->along[d][at] * body->mesh->x[2 * (size_t)node[a] + c];
             inner->weight[q * nodes + a] = cut->value[at];
+            radius += cut->value[at] * body->mesh->x[2 * (size_t)node[a]];
             inner->dof[q * nodes + a] = node[a];
         }
         inner->start[q + 1] = (q + 1) * nodes;
         inner->mass[q] = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
+        if (body->element->axisymmetric) inner->mass[q] *= radius;
         volume += inner->mass[q];
         if (inner->inmost) inner->inmost[q] = inmost;
     }

@@ -33,6 +33,9 @@ typedef struct fem_faces {
 
 ab_status fem_faces_create(const fem_mesh *, const char *body, fem_faces **faces, ab_report *);
 void fem_faces_destroy(fem_faces *);
+/* Takes out of a list of faces (3 vertices, 2 neighbours each, as above) those with both ends on the axis x = 0, within 1e-9 of `size`, m; the faces beside them then end
+ * there. radius: of vertex v at radius[stride*v], m. Returns how many are left; SIZE_MAX: no memory. */
+size_t fem_faces_off_axis(const double *radius, size_t stride, double size, size_t count, uint32_t *face, uint32_t *beside);
 
 /* True where a place of the initial mesh is in the set. `side` means an outer face whose outward normal (of its chord) points that way by less than 45 degrees; slack of
  * places 1e-9 of the mesh's size. A node belongs to a side when one of its faces does. */

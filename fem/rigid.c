@@ -100,9 +100,10 @@ static ab_status weigh(rigid_body *body, ab_report *report) {
             "body '%s': what is not given of its motion follows from forces, but its mass is not known; name a material, "
             "write motion.mass, or give velocity and spin",
             spec->name);
-    body->mass = m->has_mass ? m->mass : density * o->area;
+    const double volume = body->scene->space == AB_SPACE_AXISYMMETRIC ? ab_circumference(o->centre[0]) * o->area : o->area; /* Pappus */
+    body->mass = m->has_mass ? m->mass : density * volume;
     body->inertia = m->has_inertia ? m->inertia : body->mass * o->polar / o->area;
-    body->mass_density = has_material ? density : m->has_mass ? body->mass / o->area : 1.0;
+    body->mass_density = has_material ? density : m->has_mass ? body->mass / volume : 1.0;
     body->gravity = spec->gravity && (has_material || m->has_mass);
     return AB_OK;
 }

@@ -33,7 +33,10 @@ static bool inner_create(rigid_body *body, double cell) {
     in->dof = body->zeros;
     in->weight = body->ones;
     if (!in->position || !in->mass || !in->extent) return false;
-    for (size_t q = 0; q < count; ++q) in->mass[q] = body->mass_density * in->volume[q];
+    for (size_t q = 0; q < count; ++q) {
+        in->mass[q] = body->mass_density * in->volume[q];
+        if (body->scene->space == AB_SPACE_AXISYMMETRIC) in->mass[q] *= ab_circumference(body->outline.centre[0] + body->layer.place[q][0]);
+    }
     body->bytes += body->layer.capacity * 6 * sizeof(double);
     return true;
 }
@@ -53,12 +56,23 @@ ab_status rigid_surface_create(rigid_body *body, ab_report *report) {
     body->point_extent = rigid_take(body, 3 * o->point_count, sizeof(double));
     body->point_vertex = rigid_take(body, o->point_count, sizeof *body->point_vertex);
     body->key = rigid_take(body, o->point_count, sizeof *body->key);
+    body->face = rigid_take(body, 3 * o->face_count, sizeof *body->face);
+    body->beside = rigid_take(body, 2 * o->face_count, sizeof *body->beside);
     body->ones = rigid_take(body, most, sizeof *body->ones);
     body->zeros = rigid_take(body, most, sizeof *body->zeros);
     body->counting = rigid_take(body, most + 1, sizeof *body->counting);
     if (!body->vertex_place || !body->point_place || !body->point_area || !body->point_extent || !body->point_vertex || !body->key ||
-        !body->ones || !body->zeros || !body->counting)
+        !body->ones || !body->zeros || !body->counting || !body->face || !body->beside)
         goto no_memory;
+    memcpy(body->face, o->face, 3 * o->face_count * sizeof *body->face);
+    memcpy(body->beside, o->beside, 2 * o->face_count * sizeof *body->beside);
+    body->face_count = o->face_count;
+    if (body->scene->space == AB_SPACE_AXISYMMETRIC) {
+        double size = 0.0;
+        for (size_t k = 0; k < o->vertex_count; ++k) size = fmax(size, o->vertex[k][0]);
+        body->face_count = fem_faces_off_axis(o->vertex[0], 2, size, o->face_count, body->face, body->beside);
+        if (body->face_count == SIZE_MAX) goto no_memory;
+    }
     for (size_t k = 0; k < most; ++k) body->ones[k] = 1.0;
     for (size_t k = 0; k <= most; ++k) body->counting[k] = k;
     body->inner.start = body->counting;
@@ -72,7 +86,7 @@ no_memory:
 
 void rigid_surface_destroy(rigid_body *body) {
     free(body->vertex_place), free(body->point_place), free(body->point_area), free(body->point_extent), free(body->point_vertex);
-    free(body->key), free(body->ones), free(body->zeros), free(body->counting);
+    free(body->face), free(body->beside), free(body->key), free(body->ones), free(body->zeros), free(body->counting);
     free(body->inner.position), free(body->inner.mass), free(body->inner.extent);
     rigid_layer_clear(&body->layer);
     fem_trace_destroy(body->trace);
@@ -119,9 +133,9 @@ ab_status rigid_faces(ab_domain *domain, ab_surface *surface, ab_report *report)
     surface->vertex_start = body->counting;
     surface->vertex_dof = body->zeros;
     surface->vertex_weight = body->ones;
-    surface->face_count = o->face_count;
-    surface->face_vertex = o->face;
-    surface->face_beside = o->beside;
+    surface->face_count = body->face_count;
+    surface->face_vertex = body->face;
+    surface->face_beside = body->beside;
     return AB_OK;
 }
 

@@ -14,6 +14,7 @@ ab_status fem_outer_create(fem_body *body, fem_faces *faces, ab_report *report) 
         o->start = fem_take(body, n + 1, sizeof *o->start);
         o->weight = fem_take(body, n, sizeof *o->weight);
         o->vertex = fem_take(body, 3 * faces->count, sizeof *o->vertex);
+        o->beside = fem_take(body, 2 * faces->count, sizeof *o->beside);
         o->vertex_place = fem_take(body, 2 * n, sizeof *o->vertex_place);
         o->area = fem_take(body, n, sizeof *o->area);
         o->key = fem_take(body, n, sizeof *o->key);
@@ -24,7 +25,7 @@ ab_status fem_outer_create(fem_body *body, fem_faces *faces, ab_report *report) 
         o->point_extent = fem_take(body, 3 * n, sizeof *o->point_extent);
     } else
         fem_faces_destroy(faces);
-    if (!o || !o->place || !o->start || !o->weight || !o->vertex || !o->vertex_place || !o->area || !o->key || !o->point_dof ||
+    if (!o || !o->place || !o->start || !o->weight || !o->vertex || !o->beside || !o->vertex_place || !o->area || !o->key || !o->point_dof ||
         !o->point_vertex || !o->point_place || !o->point_area || !o->point_extent)
         return ab_report_failure(report, "body '%s': no memory for %zu outer faces", body->domain.spec->name, faces->count);
     for (size_t i = 0; i < body->nodes; ++i) o->place[i] = FEM_NONE;
@@ -35,6 +36,12 @@ ab_status fem_outer_create(fem_body *body, fem_faces *faces, ab_report *report) 
     }
     o->start[n] = n;
     for (size_t k = 0; k < 3 * faces->count; ++k) o->vertex[k] = faces->vertex[k] == FEM_NONE ? FEM_NONE : o->place[faces->vertex[k]];
+    memcpy(o->beside, faces->beside, 2 * faces->count * sizeof *o->beside);
+    o->face_count = faces->count;
+    if (!body->element->axisymmetric) return AB_OK;
+    for (size_t k = 0; k < n; ++k) o->vertex_place[k] = body->x[2 * (size_t)faces->node[k]];
+    o->face_count = fem_faces_off_axis(o->vertex_place, 1, body->mesh->high[0] - body->mesh->low[0], faces->count, o->vertex, o->beside);
+    if (o->face_count == SIZE_MAX) return ab_report_failure(report, "body '%s': no memory for its outer faces", body->domain.spec->name);
     return AB_OK;
 }
 
@@ -55,9 +62,9 @@ ab_status fem_surface_faces(ab_domain *domain, ab_surface *surface, ab_report *r
     surface->vertex_start = o->start;
     surface->vertex_dof = o->faces->node;
     surface->vertex_weight = o->weight;
-    surface->face_count = o->faces->count;
+    surface->face_count = o->face_count;
     surface->face_vertex = o->vertex;
-    surface->face_beside = o->faces->beside;
+    surface->face_beside = o->beside;
     return AB_OK;
 }
 
@@ -65,15 +72,15 @@ ab_status fem_surface_faces(ab_domain *domain, ab_surface *surface, ab_report *r
 static void share_area(const fem_body *body, fem_outer *o) {
     const fem_faces *faces = o->faces;
     memset(o->area, 0, faces->node_count * sizeof *o->area);
-    for (size_t f = 0; f < faces->count; ++f) {
-        const uint32_t *v = faces->vertex + 3 * f, *place = o->vertex + 3 * f;
-        const double *a = body->x + 2 * (size_t)v[0], *b = body->x + 2 * (size_t)v[1];
-        if (v[2] == FEM_NONE) {
+    for (size_t f = 0; f < o->face_count; ++f) {
+        const uint32_t *place = o->vertex + 3 * f;
+        const double *a = body->x + 2 * (size_t)faces->node[place[0]], *b = body->x + 2 * (size_t)faces->node[place[1]];
+        if (place[2] == FEM_NONE) {
             const double half = 0.5 * hypot(b[0] - a[0], b[1] - a[1]);
             o->area[place[0]] += half;
             o->area[place[1]] += half;
         } else {
-            const double *m = body->x + 2 * (size_t)v[2], length = hypot(m[0] - a[0], m[1] - a[1]) + hypot(b[0] - m[0], b[1] - m[1]);
+            const double *m = body->x + 2 * (size_t)faces->node[place[2]], length = hypot(m[0] - a[0], m[1] - a[1]) + hypot(b[0] - m[0], b[1] - m[1]);
             o->area[place[0]] += length / 6.0;
             o->area[place[1]] += length / 6.0;
             o->area[place[2]] += length * 4.0 / 6.0;
@@ -108,7 +115,7 @@ ab_status fem_surface_points(ab_domain *domain, const ab_region *region, ab_surf
     for (size_t k = 0; k < ld; ++k) {
         const uint32_t node = o->faces->node[k];
         const double *x = body->x + 2 * (size_t)node;
-        if (!in_region(region, x)) continue;
+        if (!(o->area[k] > 0.0) || !in_region(region, x)) continue; /* on the axis, it has no face */
         o->key[count] = (uint64_t)node + 1;
         o->point_dof[count] = node;
         o->point_vertex[count] = (uint32_t)k;

@@ -25,6 +25,7 @@ typedef struct tile {
 } tile;
 
 struct fem_trace {
+    bool axisymmetric; /* masses are those of rings; the grid begins at the axis */
     const char *body;
     double h, inverse_h, modulus;
     int width; /* nodes of a point per direction: 2 hats; 3, 4 quadratic and cubic splines */
@@ -84,6 +85,7 @@ ab_status fem_trace_create(const ab_scene *scene, const char *body, double modul
     if (!t) return ab_report_failure(report, "body '%s': no memory for its trace on the grid", body);
     t->body = body;
     t->h = scene->grid_cell;
+    t->axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
     t->inverse_h = 1.0 / t->h;
     t->modulus = modulus;
     t->width = width_of(scene, body);
@@ -400,11 +402,13 @@ static void density_gradient(const fem_trace *t, const fem_inner *inner, uint32_
             double difference[2], mean[2];
             ab_density_pair((x[q] - at[0]) * t->inverse_h, &difference[0], &mean[0]);
             ab_density_pair((y[q] - at[1]) * t->inverse_h, &difference[1], &mean[1]);
-            slope[0] += inner->mass[q] * difference[0] * mean[1];
-            slope[1] += inner->mass[q] * mean[0] * difference[1];
+            const double mass = t->axisymmetric ? inner->mass[q] / ab_circumference(x[q]) : inner->mass[q];
+            slope[0] += mass * difference[0] * mean[1];
+            slope[1] += mass * mean[0] * difference[1];
         }
     }
     for (int d = 0; d < 2; ++d) slope[d] *= t->inverse_h * t->inverse_h * t->inverse_h;
+    if (t->axisymmetric && !(at[0] > 0.0)) slope[0] = 0.0;
 }
 
 static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t needs) {
@@ -482,8 +486,9 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
                 ny = ab_larger(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
             }
             const double m = inner->mass[q], v = inner->volume[q], gx = sx * ny, gy = sy * nx, value = nx * ny;
-            gradient[0] += m * gx;
-            gradient[1] += m * gy;
+            const double plane = t->axisymmetric ? m / ab_circumference(x[q]) : m; /* normals are those of the plane that is drawn */
+            gradient[0] += plane * gx;
+            gradient[1] += plane * gy;
             area[0] += v * gx;
             area[1] += v * gy;
             if (!(value > 0.0)) continue;
@@ -499,6 +504,7 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
         }
     }
     for (size_t e = begin; e < *stencil; ++e) t->stencil_weight[e] /= mass;
+    if (t->axisymmetric && !(at[0] > 0.0)) gradient[0] = area[0] = 0.0; /* the other side of the axis is alike */
     for (size_t d = 0; d < 2; ++d) {
         t->mass_gradient[d * ld + k] = gradient[d];
         t->area_vector[d * ld + k] = area[d];

@@ -152,7 +152,8 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
                 if (!grow(&t->entries, more, sizeof *t->entries)) return false;
                 t->entry_capacity = more;
             }
-            const double mass = block[8 * ROW_MASS + l], volume = block[8 * ROW_VOLUME + l];
+            const double round = body->axisymmetric ? 1.0 / ab_circumference(x[l] + body->origin[0]) : 1.0; /* normals are those of the plane */
+            const double mass = block[8 * ROW_MASS + l] * round, volume = block[8 * ROW_VOLUME + l] * round;
             for (int j = 0; j < nodes; ++j)
                 for (int i = 0; i < nodes; ++i) {
                     const uint32_t at = wanted[w.node[l] + j * patch + i];
@@ -241,6 +242,11 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         memset(t->density_gradient, 0, 2 * ld * sizeof(double));
         const size_t tiles = candidate_tiles(body, nodes, count);
         for (size_t k = 0; k < tiles; ++k) mpm_trace_density(body, body->tiles + t->tile_list[k], nodes, count, t->density_gradient, ld);
+    }
+    for (size_t k = 0; body->axisymmetric && k < count; ++k) { /* on the axis: the other side of it is alike */
+        if (t->position[k] + body->origin[0] > 0.0) continue;
+        t->mass_gradient[k] = t->area_vector[k] = 0.0;
+        if (needs & AB_NEED_DENSITY_GRADIENT) t->density_gradient[k] = 0.0;
     }
     if ((needs & AB_NEED_NEAR_POINTS) && !list_near(body, nodes, count, entries)) goto no_memory;
     *trace = (ab_trace){

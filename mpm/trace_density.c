@@ -18,7 +18,8 @@ void mpm_trace_density(const mpm_body *body, const mpm_tile *tile, const uint32_
     for (uint32_t b = 0; b < tile->blocks; ++b) {
         const double *block = mpm_block(body, tile->first + b);
         for (int l = 0; l < 8; ++l) {
-            const double m = scale * block[8 * ROW_MASS + l];
+            const double round = body->axisymmetric ? ab_circumference(block[8 * ROW_X + l] + body->origin[0]) : 1.0;
+            const double m = scale * block[8 * ROW_MASS + l] / round;
             const double s[2] = {block[8 * ROW_X + l] * body->inverse_h - corner[0],
                                  block[8 * (ROW_X + 1) + l] * body->inverse_h - corner[1]};
             const int i0 = (int)floor(s[0]) - 1, j0 = (int)floor(s[1]) - 1; /* of the sixteen nodes it reaches */
