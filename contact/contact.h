@@ -146,7 +146,9 @@ void contact_spread_destroy(contact_spread *);
 /* share.c */
 bool contact_share_sums(contact_points *); /* into state0, from the states of the last step; false: no memory */
 void contact_sums_destroy(contact_sums *);
-bool contact_carried_areas(contact_points *); /* into carried, of shared nodes, once impulses stand: m, sum kept but for what nobody near carries; false: no memory */
+bool contact_carried_areas(
+    contact_points
+        *); /* into carried, of shared nodes, once impulses stand: m, sum kept but for what nobody near carries; false: no memory */
 
 /* keep.c: checkpoints. False: refused */
 struct ab_checkpoint;

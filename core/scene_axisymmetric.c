@@ -38,8 +38,8 @@ static void check_body(ab_scene_reader *r, const ab_body_spec *body) {
                         "body '%s' reaches to x = %.10g m, but in an axisymmetric scene x is the radius; draw the half right of the axis",
                         body->name, low[0]);
     if (body->surface_points > 0.0)
-        ab_report_error(r->base.report, body->mark, "bodies.%s.surface: points on the outline are not there yet in axisymmetric scenes; leave the key out",
-                        body->name);
+        ab_report_error(r->base.report, body->mark,
+                        "bodies.%s.surface: points on the outline are not there yet in axisymmetric scenes; leave the key out", body->name);
     if (body->basis != NULL && strcmp(body->basis, "cpdi") == 0)
         ab_report_error(r->base.report, body->mark,
                         "bodies.%s.basis: cpdi is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",
@@ -53,8 +53,8 @@ static void check_contact(ab_scene_reader *r, size_t number) {
     const ab_body_spec *a = &r->scene->bodies[contact->body[0]], *b = &r->scene->bodies[contact->body[1]];
     if (contact->finder != NULL && (contact->finder->class_.needs & AB_NEED_SURFACE) && is_points(a) && is_points(b))
         ab_report_error(r->base.report, contact->mark,
-                        "contact[%zu]: '%s' between two bodies of points is not there yet in axisymmetric scenes; use multi-velocity", number,
-                        contact->finder->class_.name);
+                        "contact[%zu]: '%s' between two bodies of points is not there yet in axisymmetric scenes; use multi-velocity",
+                        number, contact->finder->class_.name);
 }
 
 void ab_scene_hold_radius(ab_scene_reader *r, ab_body_spec *body) {
@@ -62,8 +62,10 @@ void ab_scene_hold_radius(ab_scene_reader *r, ab_body_spec *body) {
     ab_motion_spec *motion = &body->motion;
     const bool aside = motion->has[0] && (motion->velocity[0].expression != NULL || motion->velocity[0].value != 0.0);
     if (aside || (motion->has_spin && (motion->spin.expression != NULL || motion->spin.value != 0.0)))
-        ab_report_error(r->base.report, aside ? motion->velocity[0].mark : motion->spin.mark,
-                        "bodies.%s.motion: a rigid body moves along the axis only in an axisymmetric scene; write velocity: [0, vy] and leave spin out", body->name);
+        ab_report_error(
+            r->base.report, aside ? motion->velocity[0].mark : motion->spin.mark,
+            "bodies.%s.motion: a rigid body moves along the axis only in an axisymmetric scene; write velocity: [0, vy] and leave spin out",
+            body->name);
     motion->has[0] = motion->has_spin = true; /* held at 0 */
 }
 
@@ -80,9 +82,11 @@ void ab_scene_check_axisymmetric(ab_scene_reader *r) {
     for (size_t c = 0; c < scene->contact_count; c++) check_contact(r, c);
     if (scene->grid_cell > 0.0 && scene->grid_from[0] > 0.0)
         for (size_t b = 0; b < scene->body_count; b++) {
-            if (scene->contact_count == 0 && (scene->bodies[b].method == NULL || strcmp(scene->bodies[b].method, "material-points") == 0)) continue;
+            if (scene->contact_count == 0 && (scene->bodies[b].method == NULL || strcmp(scene->bodies[b].method, "material-points") == 0))
+                continue;
             ab_report_error(r->base.report, scene->mark_grid,
-                            "grid.from is %.10g m along x; with finite elements, rigid bodies or contact the grid of an axisymmetric scene begins at the axis, 0 (cells "
+                            "grid.from is %.10g m along x; with finite elements, rigid bodies or contact the grid of an axisymmetric scene "
+                            "begins at the axis, 0 (cells "
                             "without material cost nothing)",
                             scene->grid_from[0]);
             break;

@@ -70,8 +70,8 @@ typedef struct rigid_body {
     size_t load_count;
 
     /* what finders see */
-    bool moved;           /* since the arrays below were filled */
-    size_t face_count;    /* those of the outline but, in axisymmetric scenes, what lies on the axis */
+    bool moved;        /* since the arrays below were filled */
+    size_t face_count; /* those of the outline but, in axisymmetric scenes, what lies on the axis */
     uint32_t *face, *beside;
     double *vertex_place; /* rows of outline.vertex_count */
     double *point_place, *point_area, *point_extent, *ones;

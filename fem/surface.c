@@ -25,8 +25,8 @@ ab_status fem_outer_create(fem_body *body, fem_faces *faces, ab_report *report) 
         o->point_extent = fem_take(body, 3 * n, sizeof *o->point_extent);
     } else
         fem_faces_destroy(faces);
-    if (!o || !o->place || !o->start || !o->weight || !o->vertex || !o->beside || !o->vertex_place || !o->area || !o->key || !o->point_dof ||
-        !o->point_vertex || !o->point_place || !o->point_area || !o->point_extent)
+    if (!o || !o->place || !o->start || !o->weight || !o->vertex || !o->beside || !o->vertex_place || !o->area || !o->key ||
+        !o->point_dof || !o->point_vertex || !o->point_place || !o->point_area || !o->point_extent)
         return ab_report_failure(report, "body '%s': no memory for %zu outer faces", body->domain.spec->name, faces->count);
     for (size_t i = 0; i < body->nodes; ++i) o->place[i] = FEM_NONE;
     for (size_t k = 0; k < n; ++k) {
@@ -80,7 +80,8 @@ static void share_area(const fem_body *body, fem_outer *o) {
             o->area[place[0]] += half;
             o->area[place[1]] += half;
         } else {
-            const double *m = body->x + 2 * (size_t)faces->node[place[2]], length = hypot(m[0] - a[0], m[1] - a[1]) + hypot(b[0] - m[0], b[1] - m[1]);
+            const double *m = body->x + 2 * (size_t)faces->node[place[2]],
+                         length = hypot(m[0] - a[0], m[1] - a[1]) + hypot(b[0] - m[0], b[1] - m[1]);
             o->area[place[0]] += length / 6.0;
             o->area[place[1]] += length / 6.0;
             o->area[place[2]] += length * 4.0 / 6.0;

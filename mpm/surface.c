@@ -121,7 +121,8 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
     for (size_t c = 0; c < 2; ++c) s->position[c * ld + to] = block[8 * (ROW_X + c) + (size_t)l];
     for (size_t c = 0; c < 3; ++c) s->extent[c * ld + to] = block[8 * ((size_t)body->rows.extent + c) + (size_t)l];
     s->area[to] = sqrt(block[8 * ROW_VOLUME + l]);
-    if (body->axisymmetric) s->area[to] /= sqrt(ab_circumference(block[8 * ROW_X + l] + body->origin[0])); /* in the plane, as all finders see it */
+    if (body->axisymmetric)
+        s->area[to] /= sqrt(ab_circumference(block[8 * ROW_X + l] + body->origin[0])); /* in the plane, as all finders see it */
     s->key[to] = id + 1;
     size_t at = s->start[to];
     double sum = 0.0;

@@ -152,7 +152,8 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
                 if (!grow(&t->entries, more, sizeof *t->entries)) return false;
                 t->entry_capacity = more;
             }
-            const double round = body->axisymmetric ? 1.0 / ab_circumference(x[l] + body->origin[0]) : 1.0; /* normals are those of the plane */
+            const double round =
+                body->axisymmetric ? 1.0 / ab_circumference(x[l] + body->origin[0]) : 1.0; /* normals are those of the plane */
             const double mass = block[8 * ROW_MASS + l] * round, volume = block[8 * ROW_VOLUME + l] * round;
             for (int j = 0; j < nodes; ++j)
                 for (int i = 0; i < nodes; ++i) {
