@@ -4,7 +4,10 @@
  * basis (Lancaster and Salkauskas 1981). So it goes with every affine motion of the body exactly, never creeps, and its nodes and weights, w_i = sum a_p N_ip, are those
  * by which these points move: what hardly moves a point (a node that carries next to no mass) hardly moves the surface, and a push on the vertex has
  * the force and the moment of one there. (Weights of the vertex' own place in its cell do not have that: light nodes behind the surface are left with
- * accelerations that no point feels, and pressures grow to stop what they seem to move.) */
+ * accelerations that no point feels, and pressures grow to stop what they seem to move.)
+ *
+ * A vertex on a side of the grid where points may only slide (roller) stands in a plane of symmetry: half of the points around it are behind the plane, the images of
+ * those before it. Theirs and the images' places along the normal of the side cancel, and it stays in the plane. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +31,7 @@ struct mpm_touching {
     size_t *first; /* vertices + 1: what a vertex hangs on */
     uint32_t *hangs_on;
     double *share;
+    uint8_t *plane; /* per vertex, bit s: it stands in side s of the grid, a plane of symmetry */
     anchor *anchor;
     double *value; /* POINT_NODES per anchor */
     uint32_t *node;
@@ -42,14 +46,14 @@ struct mpm_touching {
 
 void mpm_touching_destroy(struct mpm_touching *t) {
     if (!t) return;
-    free(t->first), free(t->hangs_on), free(t->share), free(t->anchor), free(t->value), free(t->node);
+    free(t->first), free(t->hangs_on), free(t->share), free(t->plane), free(t->anchor), free(t->value), free(t->node);
     free(t->position), free(t->extent), free(t->area), free(t->key), free(t->start), free(t->dof), free(t->vertex), free(t->weight);
     free(t);
 }
 
 size_t mpm_touching_bytes(const struct mpm_touching *t) {
     if (!t) return 0;
-    return sizeof *t + t->vertices * sizeof *t->first + t->room * (sizeof *t->hangs_on + sizeof *t->share) +
+    return sizeof *t + t->vertices * (sizeof *t->first + sizeof *t->plane) + t->room * (sizeof *t->hangs_on + sizeof *t->share) +
            t->anchors * (sizeof *t->anchor + POINT_NODES * (sizeof *t->value + sizeof *t->node)) +
            t->room_points * (6 * sizeof(double) + sizeof *t->key + sizeof *t->start + sizeof *t->vertex) +
            t->room_stencil * (sizeof *t->dof + sizeof *t->weight);
@@ -123,8 +127,21 @@ static bool neighbours(struct mpm_touching *t, const ab_fill *fill, const bins *
     return true;
 }
 
+/* Sides of the grid that are planes of symmetry and in which a vertex stands, a bit each. */
+static uint8_t planes_of(const mpm_body *body, const double x[2]) {
+    static const double THERE = 1e-9; /* of a cell */
+    uint8_t plane = 0;
+    for (int s = 0; s < AB_SIDES; ++s) {
+        const double side = s % 2 ? body->span[s / 2] : 0.0;
+        if (body->scene->side[s] == AB_SIDE_ROLLER && fabs(x[s / 2] - side) <= THERE * body->h) plane |= (uint8_t)(1u << s);
+    }
+    return plane;
+}
+
+static bool mirrored(uint8_t plane, int c) { return plane >> (2 * c) & 3; }
+
 /* Turns weights into shares: times 1 + b.d, so that their centre is x. False where the points stand in one line. */
-static bool centre(struct mpm_touching *t, const ab_fill *fill, const double x[2], double flat, size_t from, size_t end) {
+static bool centre(struct mpm_touching *t, const ab_fill *fill, const double x[2], uint8_t plane, double flat, size_t from, size_t end) {
     double m[6] = {0}; /* moments 1, x, y, xx, xy, yy */
     for (size_t k = from; k < end; ++k) {
         const double w = t->share[k], dx = fill->x[t->hangs_on[k]] - x[0], dy = fill->y[t->hangs_on[k]] - x[1];
@@ -133,8 +150,15 @@ static bool centre(struct mpm_touching *t, const ab_fill *fill, const double x[2
     if (!(m[0] > 0.0)) return false;
     const double mx = m[1] / m[0], my = m[2] / m[0], xx = m[3] / m[0] - mx * mx, xy = m[4] / m[0] - mx * my, yy = m[5] / m[0] - my * my,
                  det = xx * yy - xy * xy;
-    if (!(det > flat * (xx + yy))) return false; /* the smaller principal moment is about det/(xx + yy) */
-    const double b[2] = {(my * xy - mx * yy) / det, (mx * xy - my * xx) / det};
+    double b[2] = {0.0, 0.0};
+    if (!plane) {
+        if (!(det > flat * (xx + yy))) return false; /* the smaller principal moment is about det/(xx + yy) */
+        b[0] = (my * xy - mx * yy) / det, b[1] = (mx * xy - my * xx) / det;
+    } else { /* with the images the centre is in the plane, and only the direction along it is left */
+        if (!(mirrored(plane, 0) || xx > flat) || !(mirrored(plane, 1) || yy > flat)) return false;
+        if (!mirrored(plane, 0)) b[0] = -mx / xx;
+        if (!mirrored(plane, 1)) b[1] = -my / yy;
+    }
     double sum = 0.0;
     for (size_t k = from; k < end; ++k) {
         t->share[k] *= 1.0 + b[0] * (fill->x[t->hangs_on[k]] - x[0] - mx) + b[1] * (fill->y[t->hangs_on[k]] - x[1] - my);
@@ -176,15 +200,17 @@ ab_status mpm_touching_create(mpm_body *body, const ab_fill *fill, ab_report *re
     struct mpm_touching *t = calloc(1, sizeof *t);
     body->outline->touching = t;
     bins b = {0};
-    bool room = t && (t->first = calloc(loops->count + 1, sizeof *t->first)) && bins_create(fill, fmax(apart, 0.5 * body->h), &b);
+    bool room = t && (t->first = calloc(loops->count + 1, sizeof *t->first)) && (t->plane = calloc(loops->count + 1, sizeof *t->plane)) &&
+                bins_create(fill, fmax(apart, 0.5 * body->h), &b);
     ab_status status = AB_OK;
     for (size_t k = 0; room && status == AB_OK && k < loops->count; ++k) {
         const double x[2] = {loops->x[2 * k] + body->origin[0], loops->x[2 * k + 1] + body->origin[1]};
         double radius = RADIUS * apart;
+        t->plane[k] = planes_of(body, loops->x + 2 * k);
         bool found = false;
         for (int attempt = 0; room && !found && attempt < TRIES; ++attempt, radius *= WIDER) {
             room = neighbours(t, fill, &b, x, radius, t->first[k], t->first + k + 1);
-            found = room && centre(t, fill, x, FLAT * apart * apart, t->first[k], t->first[k + 1]);
+            found = room && centre(t, fill, x, t->plane[k], FLAT * apart * apart, t->first[k], t->first[k + 1]);
         }
         if (room && !found)
             status =
@@ -248,7 +274,8 @@ bool mpm_touching_place(mpm_body *body, bool stencils) {
         }
         all = all && sum > 0.0;
         if (!(sum > 0.0)) continue;
-        for (size_t c = 0; c < 2; ++c) body->outline->loops.x[2 * k + c] = x[c] / sum;
+        for (int c = 0; c < 2; ++c) /* in a plane of symmetry it stays there */
+            if (!mirrored(t->plane[k], c)) body->outline->loops.x[2 * k + (size_t)c] = x[c] / sum;
     }
     return all;
 }

@@ -178,6 +178,57 @@ static void test_affine_motion_is_exact(void **state) {
     one_body_destroy(one);
 }
 
+/* A body of two halves that mirror each other, or one half of it at a side of the grid that is a plane of symmetry. */
+static one_body *symmetric(const char *basis, bool half, double *plane) {
+    char more[200], text[4000];
+    snprintf(more, sizeof more, "%s, surface: points, fill: {per_cell: 9}", basis);
+    const char *all = scene(more, half ? "shape: {box: [[-5, 4.6], [-1, 7.5]]}" : "shape: {box: [[1, 4.6], [9, 7.5]]}", "[0, 0]", 1e-3);
+    const char *rest = strstr(all, "0.5}") + 3;
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(rest - all), all, half ? ", sides: {left: roller}" : "", rest);
+    *plane = half ? 0 : 10;
+    one_body *one = one_body_create(text, 1);
+    for (size_t slot = 0; slot < one->mpm->block_count * 8; slot++) {
+        const double x = *point_row(one->mpm, slot, ROW_X) - *plane, y = *point_row(one->mpm, slot, ROW_X + 1);
+        *point_row(one->mpm, slot, ROW_X) = *plane + 1.01 * x;
+        *point_row(one->mpm, slot, ROW_X + 1) = 0.99 * y + 0.01 * x * x;
+    }
+    return one;
+}
+
+/* Surface points in a plane of symmetry stand where those in the middle of the whole body do and move nodes as they do. */
+static void test_half_a_body_at_a_side_is_as_the_whole(void **state) {
+    (void)state;
+    static const char *const BASES[] = {"basis: gimp", "basis: linear", "basis: cpdi"};
+    for (int b = 0; b < 3; b++) {
+        double place[2][2] = {{0}}, weighed[2][2] = {{0}}; /* whole or half; top, bottom */
+        for (int half = 0; half < 2; half++) {
+            double plane;
+            one_body *one = symmetric(BASES[b], half, &plane);
+            const ab_surface s = look(one);
+            int found = 0;
+            for (size_t k = 0; k < s.point_count; k++) {
+                const double y = s.point_position[s.point_ld + k];
+                const int top = y > 9;
+                if (fabs(s.point_position[k] - plane) > 1e-9 || (y > 7.7 && y < 10.3)) continue; /* the half has more along the side */
+                found++;
+                assert_true(fabs(s.point_position[k] - plane) < 1e-12);
+                place[half][top] = y;
+                for (size_t e = s.point_start[k]; e < s.point_start[k + 1]; e++) {
+                    double x[2];
+                    node_place(one->mpm, s.point_dof[e] / AB_TILE_NODES, (int)(s.point_dof[e] % AB_TILE_NODES), x);
+                    weighed[half][top] += s.point_weight[e] * cos(x[0] - plane) * exp(x[1] - 9);
+                }
+            }
+            assert_int_equal(found, 2);
+            one_body_destroy(one);
+        }
+        for (int top = 0; top < 2; top++) {
+            assert_true(fabs(place[0][top] - place[1][top]) < 1e-11);
+            assert_true(fabs(weighed[0][top] - weighed[1][top]) < 1e-11 * weighed[0][top]);
+        }
+    }
+}
+
 static void refused(const char *text, const char *why) {
     one_body *one = calloc(1, sizeof *one);
     assert_int_not_equal(one_body_attempt(one, text, 1), AB_OK);
@@ -257,9 +308,13 @@ static void test_nothing_is_made_without_contact(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points_stand_on_the_outline),     cmocka_unit_test(test_any_shape_and_fill),
-        cmocka_unit_test(test_a_turning_box_takes_them_along),  cmocka_unit_test(test_affine_motion_is_exact),
-        cmocka_unit_test(test_nodes_see_the_outline),           cmocka_unit_test(test_what_cannot_be_is_refused),
+        cmocka_unit_test(test_points_stand_on_the_outline),
+        cmocka_unit_test(test_any_shape_and_fill),
+        cmocka_unit_test(test_a_turning_box_takes_them_along),
+        cmocka_unit_test(test_affine_motion_is_exact),
+        cmocka_unit_test(test_nodes_see_the_outline),
+        cmocka_unit_test(test_what_cannot_be_is_refused),
+        cmocka_unit_test(test_half_a_body_at_a_side_is_as_the_whole),
         cmocka_unit_test(test_nothing_is_made_without_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
