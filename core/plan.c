@@ -143,6 +143,9 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
     if (scene->grid_cell == 0.0) tell(text, number++, "grid", "no body and no contact looks at one", NULL);
     if (scene->damping_local == 0.0) tell(text, number++, "damping", "none is asked for", NULL);
     if (!scene->load_count) tell(text, number++, "loads", "no traction is asked for: no surface pass", NULL);
+    if (!scene->has_checkpoint)
+        tell(text, number++, "checkpoints", "none is asked for: the state is saved only where a signal or the watchdog stops the run",
+             NULL);
     if (!scene->output_field_count) tell(text, number++, "output", "no field is asked for: nothing but places is written", NULL);
 }
 
@@ -360,6 +363,11 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
         add_seconds(text, seconds_per_step * steps_of(schedule));
     }
     ab_text_add(text, "\n");
+    if (schedule->scene->has_checkpoint) {
+        ab_text_add(text, "  a checkpoint has at most about ");
+        add_bytes(text, sum.bytes);
+        ab_text_add(text, "; two are kept\n");
+    }
 }
 
 /* ---- abut plan --------------------------------------------------------------------------------------------------------------------- */

@@ -74,6 +74,7 @@ done
 refused class_size 'wrong struct size: its ab_class says 16 bytes'
 refused ops_size 'wrong struct size: its ab_material_ops says 400 bytes'
 refused no_update 'lacks update'
+refused save 'has one of save and load'
 refused gives 'cannot need 0x0 or give 0x20'
 refused kind 'kind 9, which is none'
 refused no_name 'class without a name'

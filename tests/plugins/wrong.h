@@ -48,6 +48,9 @@
 #ifndef CLASSES
 #define CLASSES &wrong_class
 #endif
+#ifndef SAVE
+#define SAVE NULL
+#endif
 #ifndef CONSTRUCTOR
 #define CONSTRUCTOR fputs("code of the wrong plugin ran\n", stderr)
 #endif
@@ -89,7 +92,8 @@ const ab_class wrong_class = {.struct_size = CLASS_SIZE,
                               .param = PARAMS,
                               .create = create,
                               .destroy = destroy,
-                              .ops = &ops};
+                              .ops = &ops,
+                              .save = SAVE};
 static const ab_class *const classes[] = {CLASSES};
 #ifndef NO_DESCRIPTOR
 AB_EXPORT const ab_plugin abut_plugin_v1 = {STRUCT_SIZE, MAJOR, MINOR, DOUBLE_SIZE, sizeof(size_t), sizeof classes / sizeof *classes,
