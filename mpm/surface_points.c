@@ -5,6 +5,8 @@
  * by which these points move: what hardly moves a point (a node that carries next to no mass) hardly moves the surface, and a push on the vertex has
  * the force and the moment of one there. (Weights of the vertex' own place in its cell do not have that: light nodes behind the surface are left with
  * accelerations that no point feels, and pressures grow to stop what they seem to move.)
+ * What they do have is a fault of gimp: a node above the surface by nearly a cell, which the uppermost points hardly weigh at (s^2 where their stress acts on it as s, s the height
+ * of the surface over the line below), gets so much less of a push, and they are left with a part of the pressure. cpdi weighs by corners that stand on the surface: s.
  *
  * A vertex on a side of the grid where points may only slide (roller) stands in a plane of symmetry: half of the points around it are behind the plane, the images of
  * those before it. Theirs and the images' places along the normal of the side cancel, and it stays in the plane. */
