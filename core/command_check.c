@@ -1,5 +1,6 @@
 /* command_check.c: abut check: everything that can be known to be wrong without running. */
 #include "core/commands.h"
+#include "core/doubts.h"
 
 static void count(FILE *stream, const char *before, size_t number, const char *one, const char *many) {
     if (number) fprintf(stream, "%s%zu %s", before, number, number == 1 ? one : many);
@@ -31,6 +32,7 @@ int ab_command_check(const ab_command_line *line) {
             .threads = 1, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
         ab_schedule *schedule = NULL;
         status = ab_schedule_create(scene, &options, &schedule, report);
+        if (status == AB_OK) status = ab_doubts(schedule, report);
         if (status == AB_OK) { /* and only they know which values and fields they have */
             ab_state_view view;
             ab_schedule_view(schedule, &view);

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/doubts.h"
+
 /* ---- the lists ------------------------------------------------------------------------------------------------------------------- */
 
 /* Receives one item of a list: a name and what there is to say of it. */
@@ -321,10 +323,10 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
         if (has_elements(domain)) {
             ab_text_add(text, "%zu nodes in %zu element%s, ", body.points, body.elements, body.elements == 1 ? "" : "s");
         } else if (ab_domain_is_rigid(domain)) {
-            ab_text_add(text, "%zu points on the outline, ", body.points);
+            ab_text_add(text, "%zu point%s on the outline, ", body.points, body.points == 1 ? "" : "s");
         } else {
-            ab_text_add(text, "%zu points in %zu cells (%zu tiles), %zu bytes a point, ", body.points, body.cells, body.tiles,
-                        body.bytes_per_point);
+            ab_text_add(text, "%zu point%s in %zu cell%s (%zu tile%s), %zu bytes a point, ", body.points, body.points == 1 ? "" : "s",
+                        body.cells, body.cells == 1 ? "" : "s", body.tiles, body.tiles == 1 ? "" : "s", body.bytes_per_point);
         }
         if (body.tiles && (has_elements(domain) || ab_domain_is_rigid(domain)))
             ab_text_add(text, "seen on the grid (%zu tiles), ", body.tiles);
@@ -347,7 +349,7 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
     ab_text_add(text, "\nNot paid for\n");
     each_left_out(schedule, text_left_out, text);
     ab_text_add(text, "\nCost\n  ");
-    if (sum.points) ab_text_add(text, "%zu points, ", sum.points);
+    if (sum.points) ab_text_add(text, "%zu point%s, ", sum.points, sum.points == 1 ? "" : "s");
     if (nodes) ab_text_add(text, "%zu nodes, %zu elements, ", nodes, sum.elements);
     add_bytes(text, sum.bytes);
     ab_text_add(text, ", %d thread%s\n  dt %.4g s; ", options->threads, options->threads == 1 ? "" : "s", schedule->dt);
@@ -395,6 +397,9 @@ static double measure(ab_schedule *schedule, ab_report *report) {
 ab_status ab_plan_print(const ab_scene *scene, const ab_run_options *options, bool json, FILE *stream, ab_report *report) {
     ab_schedule *schedule = NULL;
     AB_TRY(ab_schedule_create(scene, options, &schedule, report));
+    const ab_status doubts = ab_doubts(schedule, report);
+    if (doubts != AB_OK) ab_schedule_destroy(schedule);
+    AB_TRY(doubts);
     ab_report *first_steps = ab_report_create(); /* their mistakes belong to the run */
     const double seconds_per_step = first_steps ? measure(schedule, first_steps) : 0.0;
     ab_report_destroy(first_steps);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "core/checkpoint_run.h"
+#include "core/doubts.h"
 #include "core/memory.h"
 #include "core/plan.h"
 #include "core/progress.h"
@@ -339,11 +340,15 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     ab_checkpoint *from = NULL;
     if (options->restart) AB_TRY(ab_checkpoint_open_for(options->restart, scene, &from, report));
     ab_status status = ab_schedule_create(scene, options, &s, report);
+    if (status == AB_OK && !from) {
+        status = ab_doubts(s, report);
+        s->warned = scene->time_dt > s->critical_dt;
+        if (status != AB_OK) ab_schedule_destroy(s);
+    }
     if (status != AB_OK) {
         ab_checkpoint_destroy(from);
         return status;
     }
-    if (!from) warn_of_dt(s, report);
     ab_report_print(report, stderr);
     signal_keeper keeper;
     catch_signals(&keeper); /* before the first byte is written: a full disk or a signal must not end the program where nothing is said */

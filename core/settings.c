@@ -74,8 +74,13 @@ static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *
         }
         names[count++] = word;
     }
-    ab_report_error(reader->report, node->mark, "%s: unknown word '%.64s'%s%s", path, node->text,
-                    ab_suggest_tail(node->text, names, count, tail, sizeof tail), direction ? ", or a direction [x, y]" : "");
+    ab_suggest_tail(node->text, names, count, tail, sizeof tail);
+    const size_t length = strlen(tail);
+    const bool asked = length > 0 && tail[length - 1] == '?';
+    ab_report_error(reader->report, node->mark, "%s: unknown word '%.64s'%s%s", path, node->text, tail,
+                    !direction ? ""
+                    : asked    ? " It may be a direction [x, y], too"
+                               : ", or a direction [x, y]");
 }
 
 static bool read_row(ab_reader *reader, const ab_key *key, const ab_node *row, size_t columns, const char *where, double *values) {

@@ -108,9 +108,11 @@ static ab_status complain(const fem_body *body, fem_trouble trouble, size_t elem
             body->service.message[0] ? body->service.message : "no reason given");
     return ab_report_failure(
         report,
-        "body '%s': element %llu near (%.6g, %.6g) m is turned inside out at t = %.9g s (step %ld, dt %.4g s, limit %.4g "
-        "s); use a smaller dt, a finer mesh there or a stiffer material",
-        name, fem_element_number(body, element), place[0], place[1], step->time + step->dt, step->number, step->dt, body->slowest);
+        "body '%s': element %llu near (%.6g, %.6g) m is %s at t = %.9g s (step %ld, dt %.4g s, limit %.4g s); use a smaller dt, a finer "
+        "mesh there or a stiffer material",
+        name, fem_element_number(body, element), place[0], place[1],
+        trouble == FEM_INVERTED ? "turned inside out" : "nearly turned inside out (watchdog: {stop: false} lets it go on)",
+        step->time + step->dt, step->number, step->dt, body->slowest);
 }
 
 static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report) {

@@ -43,7 +43,7 @@ typedef struct fem_node_sums {                            /* of FEM_RUN nodes */
     double damping, weight;                               /* J: taken by damping, done by gravity in this step */
 } fem_node_sums;
 
-typedef enum fem_trouble { FEM_FINE = 0, FEM_INVERTED, FEM_MATERIAL } fem_trouble;
+typedef enum fem_trouble { FEM_FINE = 0, FEM_INVERTED, FEM_NEARLY_INVERTED, FEM_MATERIAL } fem_trouble;
 
 typedef struct fem_load {   /* on an outer face, or on one node */
     uint32_t node[3], spec; /* first, last, middle of the face, FEM_NONE: no such; which load of the scene */

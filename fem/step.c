@@ -38,11 +38,14 @@ void fem_gather(const fem_body *body, size_t block, const double *pairs, double 
 }
 #endif
 
-/* The first lane of a block that is no element any more (NaN counts), or -1. */
+static const double NEARLY = 0.01; /* of the det J of a square as large: an element with less at a corner is about to turn inside out */
+
+/* The first lane of a block that is no element any more (NaN counts), or is about to be none, or -1. */
 static int inverted(const fem_body *body, size_t number, const fem_block *block) {
     const int lanes = fem_lanes(body, number);
+    const double least = body->scene->watch ? NEARLY : 0.0;
     for (int l = 0; l < lanes; ++l)
-        if (!(block->jacobian[l] > 0.0)) return l;
+        if (!(block->jacobian[l] > least)) return l;
     return -1;
 }
 
@@ -79,7 +82,7 @@ static fem_trouble step_group(fem_body *body, size_t group, const ab_step *step,
         const int lane = inverted(body, first + k, block + k);
         if (lane >= 0) {
             *culprit = 8 * (first + k) + (size_t)lane;
-            return FEM_INVERTED;
+            return block[k].jacobian[lane] > 0.0 ? FEM_NEARLY_INVERTED : FEM_INVERTED;
         }
         fem_batch_strain(&batch, body, first + k, block + k, k * points);
     }
@@ -98,18 +101,18 @@ static fem_trouble step_group(fem_body *body, size_t group, const ab_step *step,
 }
 
 fem_trouble fem_elements_step(fem_body *body, const ab_step *step, size_t *culprit) {
-    size_t first = SIZE_MAX; /* of the elements in trouble, whichever thread met it: twice its number, and 1 where it is inverted */
+    size_t first = SIZE_MAX; /* of the elements in trouble, whichever thread met it: four times its number, and its trouble */
 #pragma omp parallel for schedule(static) num_threads(body->threads) reduction(min : first)
     for (size_t g = 0; g < body->groups; ++g) {
         size_t element = 0;
         const fem_trouble trouble = step_group(body, g, step, &element);
         if (trouble == FEM_FINE) continue;
-        const size_t mark = 2 * element + (trouble == FEM_INVERTED);
+        const size_t mark = 4 * element + (size_t)trouble;
         first = mark < first ? mark : first;
     }
     if (first == SIZE_MAX) return FEM_FINE;
-    *culprit = first / 2;
-    return first % 2 ? FEM_INVERTED : FEM_MATERIAL;
+    *culprit = first / 4;
+    return (fem_trouble)(first % 4);
 }
 
 void fem_elements_start(fem_body *body) {

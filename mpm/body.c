@@ -51,7 +51,8 @@ static double critical_dt(ab_domain *domain, const char **limit) {
     snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name,
              body->h);
     *limit = body->limit;
-    return stable_courant(body) * body->h / (body->wave_speed + body->largest_speed);
+    body->courant = stable_courant(body);
+    return body->courant * body->h / (body->wave_speed + body->largest_speed);
 }
 
 static void scatter_all(mpm_body *body) {
@@ -201,12 +202,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
                                  "up; use a smaller dt; of bases and updates gimp and musl are the safest",
                                  body->domain.spec->name, step->time + step->dt, step->number);
     if (low[0] < 0.0 || low[1] < 0.0 || high[0] > body->span[0] || high[1] > body->span[1]) AB_TRY(look_outside(body, step, report));
-    if (far)
-        return ab_report_failure(report,
-                                 "body '%s': a point moved %.3g m, many cells, in the step at t = %.9g s (speed %.4g m/s): the run has "
-                                 "blown up; use a smaller dt",
-                                 body->domain.spec->name, body->largest_speed * step->dt, step->time, body->largest_speed);
-    return AB_OK;
+    return mpm_too_far(body, step, far, report);
 }
 
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {

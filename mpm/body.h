@@ -182,6 +182,7 @@ struct mpm_body {
     size_t own_capacity, filter_capacity, volumetric_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
+    double courant;     /* dt (c + v)/h of the last limit */
     double light_limit; /* kg: nodes with less are looked at in every step; 0: none */
     uint64_t *light;    /* per tile: a bit for each of its nodes with less */
     mpm_tie *ties;      /* of this step, by dof */
@@ -226,6 +227,9 @@ struct mpm_body {
 ab_status mpm_create(const ab_scene *, size_t body, int threads, ab_domain **, ab_report *);
 /* The same for a body whose shape is a mesh; borrowed, only until this returns. NULL: as its shape says. */
 ab_status mpm_create_in(const ab_scene *, size_t body, const ab_mesh *, int threads, ab_domain **, ab_report *);
+
+/* too_far.c: after the points' new places are known; far: one of them is not in reach of its tile any more. AB_FAILED names the point */
+ab_status mpm_too_far(const mpm_body *, const ab_step *, bool far, ab_report *);
 
 /* plan.c */
 void mpm_plan(const ab_domain *, ab_plan_body *);

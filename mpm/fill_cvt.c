@@ -206,10 +206,11 @@ static ab_status iterate(ab_cvt *cvt, double (*to)[2], double (*before)[2], doub
             memcpy(cvt->x[i], hypot(push[0], push[1]) <= FARTHEST && ab_interior_holds(&cvt->interior, x) ? x : to[i], sizeof to[i]);
         }
     }
-    ab_report_warning(filler->report, cvt->mark,
-                      "body '%s': after %d rounds its points still move by up to %.2g of their distance, not %.2g as wanted; they are used "
-                      "as they are (raise iterations or tolerance)",
-                      filler->body, filler->iterations, largest, filler->tolerance);
+    ab_report_warning(
+        filler->report, cvt->mark,
+        "body '%s': after %d round%s its points still move by up to %.2g of their distance, not %.2g as wanted; they are used "
+        "as they are (raise iterations or tolerance)",
+        filler->body, filler->iterations, filler->iterations == 1 ? "" : "s", largest, filler->tolerance);
     return AB_OK;
 }
 

@@ -147,7 +147,10 @@ static int complain(const law *l, ab_batch *b) {
         const double J = left_cauchy_green(b->deformation_gradient, b->ld, i, (int)b->dimension).J;
         if (J > 1e-12 && !is_turned_over(J)) continue;
         b->flag[i] = 1;
-        snprintf(text, sizeof text, "the material is turned inside out: det F = %g; a smaller time step or finer points may help", J);
+        if (isfinite(J))
+            snprintf(text, sizeof text, "the material is turned inside out: det F = %g", J);
+        else
+            snprintf(text, sizeof text, "the deformation gradient has no finite determinant any more: the run has blown up");
         l->host->message(l->host->context, text);
     }
     return -1;
@@ -158,9 +161,9 @@ static int update(void *self, ab_batch *b) {
     long bad = 0;
     size_t i = 0;
     for (; i + 8 <= b->count; i += 8)
-        bad += (b->dimension == 2 ? plane : space)(
-            l, b->ld, &(rows){b->deformation_gradient + i, b->wave_speed ? b->density + i : NULL, b->stress1 + i,
-                             b->wave_speed ? b->wave_speed + i : NULL});
+        bad += (b->dimension == 2 ? plane : space)(l, b->ld,
+                                                   &(rows){b->deformation_gradient + i, b->wave_speed ? b->density + i : NULL,
+                                                           b->stress1 + i, b->wave_speed ? b->wave_speed + i : NULL});
     if (i < b->count) bad += few(l, b, i);
     return bad == 0 ? 0 : complain(l, b);
 }

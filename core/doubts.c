@@ -1,0 +1,84 @@
+/* doubts.c: combinations that are known not to work, each with where it is known from. */
+#include "core/doubts.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double HOPELESS = 2;     /* of the limit: limits are of the worst places of points, others bear up to 1.7 of it */
+static const double FAR = 2400;       /* cells: where flip on gimp and cpdi has grown to what there is (docs/accuracy.md) */
+static const double FAR_LINEAR = 10;  /* cells: the same on the linear basis, at cfl 0.5 and above (tests/stability/light_nodes.yaml) */
+static const double SPLINE_CFL = 0.6; /* bspline3 with usl */
+static const double INCOMPRESSIBLE =
+    0.49; /* Poisson's ratio from where on volume locks low-order bodies, and waves are 4 times as fast as at 0.3 */
+
+static bool is(const char *word, const char *wanted) { return word && !strcmp(word, wanted); }
+
+/* m/s, of the centre of mass at the start, or what moves the fastest part where that is known. */
+static double speed_of(const ab_schedule *s, size_t b) {
+    const ab_motion *motion = s->motion + b;
+    return motion->mass > 0.0 ? hypot(motion->momentum[0], motion->momentum[1]) / motion->mass : 0.0;
+}
+
+static void doubt_flight(const ab_schedule *s, size_t b, ab_report *report) {
+    const ab_body_spec *body = s->scene->bodies + b;
+    if (body->transfer != AB_TRANSFER_FLIP || body->flip != 1.0 || !body->update || is(body->update, "usl")) return;
+    const bool linear = is(body->basis, "linear"), domains = is(body->basis, "gimp") || is(body->basis, "cpdi");
+    const double cells = speed_of(s, b) * s->scene->time_end / s->scene->grid_cell;
+    if (!(domains && cells > FAR) && !(linear && cells > FAR_LINEAR)) return;
+    ab_report_warning(
+        report, body->mark,
+        "bodies.%s: it flies through about %.3g cells with transfer flip, update %s on basis %s, which makes energy from some %g "
+        "cells on; use transfer apic or {flip: 0.99}, or update usl",
+        body->name, cells, body->update, body->basis, linear ? FAR_LINEAR : FAR);
+}
+
+static void doubt_poisson(const ab_schedule *s, size_t b, ab_report *report) {
+    const ab_body_spec *body = s->scene->bodies + b;
+    if (body->material >= s->scene->material_count || body->f_bar != AB_F_BAR_NONE || body->mesh.f_bar) return;
+    const ab_material_spec *material = s->scene->materials + body->material;
+    for (uint32_t k = 0; material->loaded && k < material->loaded->class_.nparam; ++k) {
+        const double nu = material->settings[k].real;
+        if (strcmp(material->loaded->class_.param[k].name, "nu") || !(nu > INCOMPRESSIBLE && nu < 0.5)) continue;
+        const double faster = sqrt((1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / ((1.0 - 0.3) / (1.3 * 0.4)));
+        ab_report_warning(report, body->mark,
+                          "bodies.%s: nu = %.6g of material '%s' makes waves %.3g times as fast as nu = 0.3 would, and the step as much "
+                          "smaller, and volume that hardly changes locks the body; use f_bar: patch, or a smaller nu",
+                          body->name, nu, material->name, faster);
+    }
+}
+
+static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *report) {
+    const ab_body_spec *body = s->scene->bodies + b;
+    if (!is(body->method, "material-points") || !(s->scene->time_dt > 0.0) || !s->scene->watch) return AB_OK;
+    const double cells = speed_of(s, b) * s->scene->time_dt / s->scene->grid_cell;
+    if (!(cells > 1.0)) return AB_OK;
+    return ab_report_error(
+        report, s->scene->mark_time,
+        "time.dt: body '%s' moves %.3g cells in the first step, at %.4g m/s; points must not pass a cell in a step: use a dt "
+        "below %.3g s, or cfl",
+        body->name, cells, speed_of(s, b), s->critical_dt);
+}
+
+ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
+    const ab_scene *scene = s->scene;
+    for (size_t b = 0; b < s->body_count; ++b) {
+        const ab_body_spec *body = scene->bodies + b;
+        AB_TRY(check_first_step(s, b, report));
+        doubt_flight(s, b, report);
+        doubt_poisson(s, b, report);
+        if (is(body->basis, "bspline3") && is(body->update, "usl") && scene->time_cfl > SPLINE_CFL)
+            ab_report_warning(report, scene->mark_time,
+                              "time.cfl %g: basis bspline3 with update usl (body '%s') is stable up to about %g; use that, or update musl",
+                              scene->time_cfl, body->name, SPLINE_CFL);
+    }
+    if (scene->time_dt > HOPELESS * s->critical_dt && scene->watch)
+        return ab_report_error(
+            report, scene->mark_time,
+            "time.dt %.4g s is %.3g times the stable limit %.4g s (%s): nothing could come of it; use dt below the limit, or "
+            "cfl. (watchdog: {stop: false} lets it be tried)",
+            scene->time_dt, scene->time_dt / s->critical_dt, s->critical_dt, s->limit);
+    if (scene->time_dt > s->critical_dt)
+        ab_report_warning(report, scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
+                          scene->time_dt, s->critical_dt, s->limit);
+    return AB_OK;
+}

@@ -1,0 +1,42 @@
+#!/bin/bash
+# cost: 3
+# What is known not to work is said before it starts, with place and remedy, and what goes wrong on the way names its first culprit. test_doubts.sh BUILD
+set -u
+build=$(realpath "${1:?the build folder}")
+here=$(cd "$(dirname "$0")" && pwd)
+cd "${ABUT_SCRATCH:-$(mktemp -d)}" || exit 1
+missed=0
+expect() { # what to do, status, pattern ("-": no warning and no error), scene, settings
+    local what=$1 status=$2 pattern=$3 scene=$here/$4.yaml set=() more=()
+    shift 4
+    for s in "$@"; do set+=(--set "$s"); done
+    [ "$what" = run ] && more=(-q -j 1 -o out)
+    "$build/abut" "$what" "$scene" "${more[@]}" "${set[@]}" >said 2>&1
+    local got=$?
+    if [ $got -ne "$status" ] || { [ "$pattern" = - ] && grep -Eq 'warning:|error:' said; } || { [ "$pattern" != - ] && ! grep -Eq -- "$pattern" said; }; then
+        echo "MISSED  $what $scene: exit $got, wanted $status and '$pattern': $*"
+        sed 's/^/        /' said
+        missed=$((missed + 1))
+    fi
+}
+nodes=light_nodes
+expect check 0 - $nodes
+expect check 2 '--set time: error: time.dt 2 s is [0-9.]+ times the stable limit .* use dt below the limit' $nodes 'time={end: end, dt: 2}'
+expect plan 2 'error: time.dt 2 s is' $nodes 'time={end: end, dt: 2}'
+expect run 2 'error: time.dt 2 s is' $nodes 'time={end: end, dt: 2}'
+expect check 0 'warning: dt 2 s is above the stable limit' $nodes 'time={end: end, dt: 2}' 'watchdog={stop: false}'
+expect check 0 'warning: dt 0.8 s is above the stable limit' $nodes 'time={end: end, dt: 0.8}'
+expect check 0 - $nodes 'time={end: end, dt: 0.5}'
+expect check 2 "error: time.dt: body 'block' moves [0-9.]+ cells in the first step" $nodes constants.drift=1000 'time={end: end, dt: 0.5}'
+expect check 0 'warning: bodies.block: it flies through about [0-9.]+ cells with transfer flip, update musl on basis linear' $nodes constants.drift=20 bodies.block.update=musl
+expect check 0 - $nodes constants.drift=20
+expect check 0 'warning: bodies.block: it flies .* on basis gimp' $nodes constants.drift=3000 bodies.block.update=musl bodies.block.basis=gimp
+expect check 0 - $nodes constants.drift=3000 bodies.block.update=musl bodies.block.basis=gimp bodies.block.transfer=apic
+expect check 0 'warning: time.cfl 0.9: basis bspline3 with update usl' $nodes bodies.block.basis=bspline3
+expect check 0 - $nodes bodies.block.basis=bspline3 time.cfl=0.6
+expect check 0 'warning: bodies.block: nu = 0.4999 .* waves [0-9.]+ times as fast.*f_bar: patch' $nodes constants.nu=0.4999
+expect check 0 - $nodes constants.nu=0.4999 bodies.block.f_bar=patch
+expect run 1 "body 'block': point [0-9]+ moved [0-9.]+ cells in one step, to \(.*velocity .* step 0, dt .*limit .*watchdog" $nodes 'time={end: end, dt: 0.4}' 'bodies.block.body_force=["10*rho", 0]'
+expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
+[ $missed -eq 0 ] && echo "passed: $(basename "$0")"
+[ $missed -eq 0 ]
