@@ -51,8 +51,8 @@ static double critical_dt(ab_domain *domain, const char **limit) {
     snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name,
              body->h);
     *limit = body->limit;
-    body->courant = stable_courant(body);
-    return body->courant * body->h / (body->wave_speed + body->largest_speed);
+    body->last_limit = stable_courant(body) * body->h / (body->wave_speed + body->largest_speed);
+    return body->last_limit;
 }
 
 static void scatter_all(mpm_body *body) {

@@ -182,7 +182,7 @@ struct mpm_body {
     size_t own_capacity, filter_capacity, volumetric_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
-    double courant;     /* dt (c + v)/h of the last limit */
+    double last_limit;  /* s, of the step */
     double light_limit; /* kg: nodes with less are looked at in every step; 0: none */
     uint64_t *light;    /* per tile: a bit for each of its nodes with less */
     mpm_tie *ties;      /* of this step, by dof */

@@ -17,8 +17,7 @@ ab_status mpm_too_far(const mpm_body *body, const ab_step *step, bool far, ab_re
         for (int c = 0; c < 2; ++c) x[c] = p[8 * (ROW_NEXT + c)] + body->origin[c], v[c] = p[8 * (ROW_V + c)];
     }
     if (!far && !(most > body->h)) return AB_OK; /* its own speed is more than that of the nodes which move it */
-    const double limit = body->courant * body->h / (body->wave_speed + hypot(v[0], v[1]));
-    const char *remedy = step->dt > limit            ? "dt is above the limit: use a smaller one, or cfl"
+    const char *remedy = step->dt > body->last_limit ? "dt is above the limit: use a smaller one, or cfl"
                          : body->scene->time_cfl > 0 ? "something threw it: look at the frames before; use a smaller cfl, or a finer grid"
                                                      : "something threw it: look at the frames before; use a smaller dt, or a finer grid";
     return ab_report_failure(
@@ -27,5 +26,5 @@ ab_status mpm_too_far(const mpm_body *body, const ab_step *step, bool far, ab_re
         "(step %ld, dt %.4g s, limit %.4g s: wave speed %.4g m/s in cells of %.4g m). %s. (watchdog: {stop: false} lets "
         "it go on while its cell can be found)",
         body->domain.spec->name, (unsigned long long)id, most / body->h, x[0], x[1], v[0], v[1], step->time + step->dt, step->number,
-        step->dt, limit, body->wave_speed, body->h, remedy);
+        step->dt, body->last_limit, body->wave_speed, body->h, remedy);
 }

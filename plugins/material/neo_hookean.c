@@ -150,7 +150,7 @@ static int complain(const law *l, ab_batch *b) {
         if (isfinite(J))
             snprintf(text, sizeof text, "the material is turned inside out: det F = %g", J);
         else
-            snprintf(text, sizeof text, "the deformation gradient has no finite determinant any more: the run has blown up");
+            snprintf(text, sizeof text, "the material is turned inside out: det F is no finite number, the run has blown up");
         l->host->message(l->host->context, text);
     }
     return -1;
