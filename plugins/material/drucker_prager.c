@@ -4,8 +4,8 @@
  *     outside       eta = 6 s/(sqrt(3) (3 - s))        through the corners of triaxial compression
  *     inside        eta = 6 s/(sqrt(3) (3 + s))        through the corners of triaxial extension
  *     plane-strain  eta = 3 t/sqrt(9 + 12 t^2)         the same limit load in plane strain, where the flow is associated
- * and xi = eta/t (de Souza Neto, Peric and Owen 2008, section 6.4.4 and box 8.8; Drucker and Prager 1952). The return is in closed form: to the cone along its flow, or to the
- * apex where the cone would be passed. */
+ * and xi = eta/t (de Souza Neto, Peric and Owen 2008, section 6.4.4 and box 8.8; Drucker and Prager 1952). The return is in closed form:
+ * to the cone along its flow, or to the apex where the cone would be passed. */
 #include "soil.h"
 
 enum { E_, NU, COHESION, FRICTION, DILATION, MATCH, RESIDUAL_COHESION, RESIDUAL_FRICTION, RESIDUAL_DILATION, SOFTENING };
@@ -16,16 +16,12 @@ typedef struct law {
     soil_elastic elastic;
     soil_softening softening;
     double cohesion, friction, dilation, cohesion_change, friction_change, dilation_change; /* Pa, tangents of the angles */
-    double square, linear; /* eta = 3 t/(sqrt(9 + square t^2) + linear t), the three matches in one form */
+    double constant, square, linear; /* xi = 3/(sqrt(constant + square t^2) + linear t), the three matches in one form */
 } law;
 
-/* eta of tan(angle); outside and inside: 6 s/(sqrt(3) (3 -+ s)) = 3 t/(sqrt(3)/2 (3 sqrt(1 + t^2) -+ t)). */
-SOIL_INLINE double steepness(const law *l, double t) {
-    return 3.0 * t / (sqrt(l->square * t * t + (l->linear == 0.0 ? 9.0 : 6.75)) + l->linear * t);
-}
-SOIL_INLINE double strength(const law *l, double c, double t) {
-    return 3.0 * c / (sqrt(l->square * t * t + (l->linear == 0.0 ? 9.0 : 6.75)) + l->linear * t);
-} /* xi c */
+/* xi of t = tan(angle), and eta = xi t; outside and inside: 6 s/(sqrt(3) (3 -+ s)) = 3 t/(sqrt(3)/2 (3 sqrt(1 + t^2) -+ t)). */
+SOIL_INLINE double reach(const law *l, double t) { return 3.0 / (sqrt(l->constant + l->square * t * t) + l->linear * t); }
+SOIL_INLINE double steepness(const law *l, double t) { return t * reach(l, t); }
 
 static __attribute__((noinline)) void check(const void *self, uint32_t components, const double strain[6][SOIL_LANES],
                                             const double stress[6][SOIL_LANES], soil_lanes *lanes) {
@@ -37,7 +33,7 @@ static __attribute__((noinline)) void check(const void *self, uint32_t component
         const double c = l.cohesion + t * l.cohesion_change, tangent = l.friction + t * l.friction_change;
         const double mean = (s[0][i] + s[1][i] + s[2][i]) * (1.0 / 3.0), x = s[0][i] - mean, y = s[1][i] - mean, z = s[2][i] - mean;
         const double root = sqrt(0.5 * (x * x + y * y + z * z) + (s[3][i] * s[3][i] + s[4][i] * s[4][i] + s[5][i] * s[5][i]));
-        const double limit = strength(&l, c, tangent);
+        const double limit = c * reach(&l, tangent);
         lanes->excess[i] = root + steepness(&l, tangent) * mean - limit - SOIL_ROUNDING * (fabs(mean) + limit);
     }
 }
@@ -46,7 +42,7 @@ static __attribute__((noinline)) void back(const void *self, const double trial[
     const law *l = self;
     const double t = soil_share(l->softening, plastic), c = l->cohesion + t * l->cohesion_change,
                  tangent = l->friction + t * l->friction_change;
-    const double eta = steepness(l, tangent), flow = steepness(l, l->dilation + t * l->dilation_change), limit = strength(l, c, tangent);
+    const double eta = steepness(l, tangent), flow = steepness(l, l->dilation + t * l->dilation_change), limit = c * reach(l, tangent);
     const double mean = (trial[0] + trial[1] + trial[2]) / 3;
     double deviator[6], square = 0.0;
     for (int k = 0; k < 6; k++) deviator[k] = k < 3 ? trial[k] - mean : trial[k], square += (k < 3 ? 0.5 : 1.0) * deviator[k] * deviator[k];
@@ -62,64 +58,38 @@ static __attribute__((noinline)) void back(const void *self, const double trial[
     for (int k = 0; k < 6; k++) stress[k] = (k < 3 ? pressed : 0.0) + (left > 0.0 ? deviator[k] * (left / root) : 0.0);
 }
 
-/* Softening faster than elasticity can unload (compare mc_least_softening): f falls by G + K eta eta' per multiplier; the plastic strain of a multiplier is 1/sqrt(3). */
+/* As mc_least_softening: f falls by G + K eta eta' per multiplier; the plastic strain of a multiplier is 1/sqrt(3). */
 static double least_softening(const law *l) {
-    const double lost =
-        strength(l, l->cohesion, l->friction) - strength(l, l->cohesion + l->cohesion_change, l->friction + l->friction_change);
+    const double residual = l->cohesion + l->cohesion_change, tangent = l->friction + l->friction_change;
+    const double lost = l->cohesion * reach(l, l->friction) - residual * reach(l, tangent);
     return lost / (sqrt(3.0) * (l->elastic.mu + l->elastic.bulk * steepness(l, l->friction) * steepness(l, l->dilation)));
 }
 
-static int create(const ab_host *host, const ab_value *s, void **self) {
-    const double cohesion = s[COHESION].real, friction = s[FRICTION].real, dilation = s[DILATION].real, degrees = 180 / acos(-1.0);
-    const double residual = s[s[RESIDUAL_COHESION].given ? RESIDUAL_COHESION : COHESION].real;
-    const double last_friction = s[s[RESIDUAL_FRICTION].given ? RESIDUAL_FRICTION : FRICTION].real;
-    const double last_dilation = s[s[RESIDUAL_DILATION].given ? RESIDUAL_DILATION : DILATION].real;
-    const int64_t match = s[MATCH].integer;
+static int create(const ab_host *host, const ab_value *v, void **self) {
+    const soil_strength s = {.cohesion = v[COHESION].real,
+                             .friction = v[FRICTION].real,
+                             .dilation = v[DILATION].real,
+                             .residual_cohesion = soil_residual(v[RESIDUAL_COHESION], v[COHESION]),
+                             .residual_friction = soil_residual(v[RESIDUAL_FRICTION], v[FRICTION]),
+                             .residual_dilation = soil_residual(v[RESIDUAL_DILATION], v[DILATION])};
+    const int64_t match = v[MATCH].integer;
     const double third = sqrt(3.0) / 2;
     law made = {.host = host,
-                .elastic = soil_elastic_of(s[E_].real, s[NU].real),
-                .cohesion = cohesion,
-                .friction = tan(friction),
-                .dilation = tan(dilation),
-                .cohesion_change = residual - cohesion,
-                .friction_change = tan(last_friction) - tan(friction),
-                .dilation_change = tan(last_dilation) - tan(dilation),
+                .elastic = soil_elastic_of(v[E_].real, v[NU].real),
+                .cohesion = s.cohesion,
+                .friction = tan(s.friction),
+                .dilation = tan(s.dilation),
+                .cohesion_change = s.residual_cohesion - s.cohesion,
+                .friction_change = tan(s.residual_friction) - tan(s.friction),
+                .dilation_change = tan(s.residual_dilation) - tan(s.dilation),
+                .constant = match == PLANE_STRAIN ? 9.0 : 6.75,
                 .square = match == PLANE_STRAIN ? 12.0 : 6.75,
                 .linear = match == PLANE_STRAIN ? 0.0
                           : match == OUTSIDE    ? -third
                                                 : third};
-    char text[300] = "";
-    if (residual > cohesion)
-        snprintf(text, sizeof text, "residual_cohesion %g Pa is above the cohesion %g Pa: softening only goes down", residual, cohesion);
-    else if (last_friction > friction)
-        snprintf(text, sizeof text, "residual_friction %g deg is above the friction %g deg: softening only goes down",
-                 last_friction * degrees, friction * degrees);
-    else if (dilation > friction)
-        snprintf(text, sizeof text,
-                 "dilation %g deg is above the friction %g deg: such a soil would make energy; give a dilation of at most the friction",
-                 dilation * degrees, friction * degrees);
-    else if (last_dilation > dilation)
-        snprintf(text, sizeof text, "residual_dilation %g deg is above the dilation %g deg: softening only goes down",
-                 last_dilation * degrees, dilation * degrees);
-    else if (last_dilation > last_friction)
-        snprintf(text, sizeof text,
-                 "at the residual the dilation of %g deg would be above the friction of %g deg, and make energy; give a residual_dilation "
-                 "of at most that",
-                 last_dilation * degrees, last_friction * degrees);
-    else if (cohesion == 0 && friction == 0)
-        snprintf(text, sizeof text, "neither cohesion nor friction: such a soil bears no shear at all; give one of them");
-    if (text[0]) return soil_say(host, text), -1;
-    const bool softens = made.cohesion_change < 0 || made.friction_change < 0 || made.dilation_change < 0;
-    if (soil_softening_read(host, s + SOFTENING, softens, &made.softening) != 0) return -1;
-    const double least = softens ? least_softening(&made) : 0;
-    if (softens && made.softening.end <= least) {
-        snprintf(text, sizeof text,
-                 "the strength falls to its residual within a plastic strain of %g, faster than elasticity can unload: it must be above %g "
-                 "(a longer softening_strain "
-                 "or softening_slip, a smaller length, or a stiffer soil)",
-                 made.softening.end, least);
-        return soil_say(host, text), -1;
-    }
+    if (soil_strength_refused(host, &s)) return -1;
+    if (soil_softening_read(host, v + SOFTENING, soil_softens(&s), &made.softening) != 0) return -1;
+    if (soil_softens(&s) && soil_softening_refused(host, made.softening, least_softening(&made))) return -1;
     law *l = host->allocate(host->context, sizeof *l);
     if (!l) return -1;
     *l = made;

@@ -3,16 +3,18 @@
  * Inside, with pressure p = -(xx + yy + zz)/3, q = sqrt(3/2 s:s), specific volume v = 1 + void ratio and preconsolidation pc,
  *     f = q^2/M^2 + p (p - pc) <= 0,   flow along its gradient,
  *     dv = -kappa dp/p  elastic,   dv = -(lambda - kappa) dpc/pc  plastic.
- * Both laws of volume are integrated exactly over a step: v follows the strain, v1 = v0 exp(strain), and p1 = p0 exp((v0 - v1)/kappa) with nothing plastic, so that a closed
- * path of volume ends at the pressure it began with, and the pressure is never tensile. Shear is elastic with a given G (an energy exists), or with Poisson's ratio: then
- * G = 3 (1 - 2 nu)/(2 (1 + nu)) v p/kappa, exact along a straight path of strain, but no energy exists (Zytynski et al. 1978): closed paths of p and q may make or lose some.
+ * Both laws of volume are integrated exactly over a step: v follows the strain, v1 = v0 exp(strain), and p1 = p0 exp((v0 - v1)/kappa)
+ * with nothing plastic, so that a closed path of volume ends at the pressure it began with, and the pressure is never tensile. Shear is
+ * elastic with a given G (an energy exists), or with Poisson's ratio: then G = 3 (1 - 2 nu)/(2 (1 + nu)) v p/kappa, exact along a
+ * straight path of strain, but no energy exists (Zytynski et al. 1978): closed paths of p and q may make or lose some.
  *
- * The return is implicit in the direction of flow, as that of Borja and Lee (1990), here with one unknown: the end is at an angle a on the ellipse,
+ * The return is implicit in the direction of flow, as that of Borja and Lee (1990), here with one unknown: the end is at an angle a on
+ * the ellipse,
  *     p1 = pc1 (1 + cos a)/2,   q1 = M pc1/2 sin a.
  * The two laws of volume give X = ln(pc1/pc0) = kappa/lambda (ln(pt/pc0) - 2 ln cos(a/2)) for the elastic pressure pt, and the flow rule
  *     (lambda - kappa) X sin a/v = M/(6 G) cos a (2 qt - M pc1 sin a).
- * Between the angle where X = 0 (or 0, where pt > pc0) and the critical state a = pi/2 the two sides change over: the root is bracketed from the start, on the wet and on the
- * dry side, and whatever it is, the stress is on the ellipse to rounding. */
+ * Between the angle where X = 0 (or 0, where pt > pc0) and the critical state a = pi/2 the two sides change over: the root is bracketed
+ * from the start, on the wet and on the dry side, and whatever it is, the stress is on the ellipse to rounding. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -82,7 +84,8 @@ static double rest(const law *l, const clay *c, const step *s, double a) {
     return (l->lambda - l->kappa) * X * sin(a) / s->v - s->stiff * cos(a) * (2.0 * s->q - l->M * c->pc * exp(X) * sin(a));
 }
 
-/* The root between low and high by false position with halving (Illinois; Dowell and Jarratt 1971); rest is not above 0 at low, not below at high. */
+/* The root between low and high by false position with halving (Illinois; Dowell and Jarratt 1971); rest is not above 0 at low, not
+ * below at high. */
 static double find_angle(const law *l, const clay *c, const step *s, double low, double high) {
     double at_low = rest(l, c, s, low), at_high = rest(l, c, s, high);
     if (!(at_low < 0.0)) return low;

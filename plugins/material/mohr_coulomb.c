@@ -1,21 +1,20 @@
-/* mohr_coulomb.c: soil and rock that slip on planes: cohesion, friction, dilation, a tension cut-off, and softening down to residuals. The surface and the return to it
- * are in mohr_coulomb.h. */
+/* mohr_coulomb.c: soil and rock that slip on planes: cohesion, friction, dilation, a tension cut-off, and softening down to residuals.
+ * The surface and the return to it are in mohr_coulomb.h. */
 #include "mohr_coulomb.h"
 
 enum { E_, NU, COHESION, FRICTION, DILATION, TENSION, RESIDUAL_COHESION, RESIDUAL_FRICTION, RESIDUAL_DILATION, SOFTENING };
 
 static int create(const ab_host *host, const ab_value *s, void **self) {
-    const bool residual_dilation = s[RESIDUAL_DILATION].given;
     return mc_create(host,
                      &(mc_settings){.E = s[E_].real,
                                     .nu = s[NU].real,
-                                    .cohesion = s[COHESION].real,
-                                    .friction = s[FRICTION].real,
-                                    .dilation = s[DILATION].real,
+                                    .strength = {.cohesion = s[COHESION].real,
+                                                 .friction = s[FRICTION].real,
+                                                 .dilation = s[DILATION].real,
+                                                 .residual_cohesion = soil_residual(s[RESIDUAL_COHESION], s[COHESION]),
+                                                 .residual_friction = soil_residual(s[RESIDUAL_FRICTION], s[FRICTION]),
+                                                 .residual_dilation = soil_residual(s[RESIDUAL_DILATION], s[DILATION])},
                                     .tension = s[TENSION].given ? s[TENSION].real : INFINITY,
-                                    .residual_cohesion = s[s[RESIDUAL_COHESION].given ? RESIDUAL_COHESION : COHESION].real,
-                                    .residual_friction = s[s[RESIDUAL_FRICTION].given ? RESIDUAL_FRICTION : FRICTION].real,
-                                    .residual_dilation = s[residual_dilation ? RESIDUAL_DILATION : DILATION].real,
                                     .softening = s + SOFTENING},
                      self);
 }

@@ -2,10 +2,11 @@
  *
  * With principal stresses s1 >= s2 >= s3 (tension positive), cohesion c, friction phi, dilation psi and tensile strength T
  *     f_ij = (s_i - s_j) + (s_i + s_j) sin phi - 2 c cos phi <= 0,    s_i <= T,
- * which flow along the gradients of (s_i - s_j) + (s_i + s_j) sin psi and of s_i. All are planes, so the return is linear in principal stresses on each face, edge
- * and corner (Koiter 1953; Clausen, Damkilde and Andersen 2006; de Souza Neto, Peric and Owen 2008, section 8.2). Where the trial stress is sorted only the planes of
- * 1-3, 1-2, 2-3 and of T can carry it: every way to hold on to one, two or three of them is solved, and the first counts that neither pulls (a negative multiplier)
- * nor leaves another plane violated. What counts is then put onto its planes once more, so that it is there to the rounding of the stress itself and not of the trial stress. */
+ * which flow along the gradients of (s_i - s_j) + (s_i + s_j) sin psi and of s_i. All are planes, so the return is linear in principal
+ * stresses on each face, edge and corner (Koiter 1953; Clausen, Damkilde and Andersen 2006; de Souza Neto, Peric and Owen 2008, section
+ * 8.2). Where the trial stress is sorted only the planes of 1-3, 1-2, 2-3 and of T can carry it: every way to hold on to one, two or
+ * three of them is solved, and the first counts that neither pulls (a negative multiplier) nor leaves another plane violated. What
+ * counts is then put onto its planes once more, so that it is there to the rounding of the stress itself and not of the trial stress. */
 #ifndef AB_MOHR_COULOMB_H
 #define AB_MOHR_COULOMB_H
 
@@ -29,8 +30,8 @@ typedef struct mc_law {
     mc_strength peak;
 } mc_law;
 
-/* Everything at the share t of the softening; plain arithmetic, for vector code. c and tan phi are linear in t, so that the strength of a plane under a given
- * pressure falls linearly; the tensile strength falls with c. */
+/* Everything at the share t of the softening; plain arithmetic, for vector code. c and tan phi are linear in t, so that the strength of
+ * a plane under a given pressure falls linearly; the tensile strength falls with c. */
 SOIL_INLINE void mc_at(const mc_law *l, double t, double *sine, double *k, double *tension) {
     const double c = l->cohesion + t * l->cohesion_change, tangent = l->friction + t * l->friction_change;
     const double cosine = 1.0 / sqrt(1.0 + tangent * tangent);
@@ -64,7 +65,7 @@ SOIL_INLINE void mc_excess_plane(const mc_law *law, soil_lanes *l) {
     }
 }
 
-/* ---- the return in principal stresses ------------------------------------------------------------------------------------------------------------------ */
+/* ---- the return in principal stresses ------------------------------------------------------------------------------------------------ */
 
 enum { MC_13, MC_12, MC_23, MC_T1, MC_T2, MC_T3, MC_PLANES };
 
@@ -116,7 +117,8 @@ static inline bool mc_solve(int n, double A[3][3], double x[3]) {
     return true;
 }
 
-/* Holds on to n planes: s and, in Pa, the worst of what is wrong with it: multipliers below 0, other planes violated, values out of order. */
+/* Holds on to n planes: s and, in Pa, the worst of what is wrong with it: multipliers below 0, other planes violated, values out of
+ * order. */
 static inline double mc_hold(const mc_planes *p, double two_mu, const double trial[3], int n, const int plane[3], double s[3]) {
     double A[3][3] = {{0}}, x[3] = {0};
     for (int r = 0; r < n; r++) {
@@ -134,7 +136,8 @@ static inline double mc_hold(const mc_planes *p, double two_mu, const double tri
     return wrong == wrong ? wrong : INFINITY;
 }
 
-/* How far the trial stress is outside of the cone that returns to the apex: between the planes that the apex spans with the edges' directions of return. */
+/* How far the trial stress is outside of the cone that returns to the apex: between the planes that the apex spans with the edges'
+ * directions of return. */
 static inline double mc_beside_apex(const mc_planes *p, double apex, const double trial[3]) {
     static const int pair[2][2] = {{MC_13, MC_23}, {MC_12, MC_13}};
     double wrong = -INFINITY;
@@ -149,8 +152,9 @@ static inline double mc_beside_apex(const mc_planes *p, double apex, const doubl
     return wrong;
 }
 
-/* Puts s, which is near the surface, on it: the smallest principal stress stands, the largest follows from the plane 1-3 or the cut-off, the middle one lies
- * between them. `pulled` of them are at the cut-off, `edge` is the one that the middle one shares its value with (-1: none). */
+/* Puts s, which is near the surface, on it: the smallest principal stress stands, the largest follows from the plane 1-3 or the cut-off,
+ * the middle one lies between them. `pulled` of them are at the cut-off, `edge` is the one that the middle one shares its value with
+ * (-1: none). */
 static inline void mc_settle(const mc_strength *strength, int pulled, bool slips, int edge, double s[3]) {
     const double rise = (1.0 - strength->sine) / (1.0 + strength->sine), start = strength->k / (1.0 + strength->sine);
     if (pulled == 3) s[2] = strength->tension;
@@ -243,16 +247,17 @@ static inline int mc_update(void *self, ab_batch *b) {
     return soil_update(l->host, l, &l->elastic, l->softening, b, mc_check, mc_back);
 }
 
-/* ---- making one ---------------------------------------------------------------------------------------------------------------------------------------- */
+/* ---- making one ---------------------------------------------------------------------------------------------------------------------- */
 
 typedef struct mc_settings {
-    double E, nu, cohesion, friction, dilation, tension;            /* angles in rad; tension INFINITY: none */
-    double residual_cohesion, residual_friction, residual_dilation; /* the peaks where there is none */
+    double E, nu;
+    soil_strength strength;
+    double tension; /* Pa; INFINITY: none */
     const ab_value *softening;
 } mc_settings;
 
-/* Softening faster than elasticity can unload makes the stress of a strain ambiguous. Where the face 1-3 carries, f falls by a.D.m per multiplier and the surface by the loss
- * of 2 c cos phi over the plastic strain of a multiplier, sqrt(2/3) |dev m|. Returns the least softening_strain that the cohesion allows. */
+/* The least softening_strain that the cohesion allows. Where the face 1-3 carries, f falls by a.D.m per multiplier and the surface by the
+ * loss of 2 c cos phi over the plastic strain of a multiplier, sqrt(2/3) |dev m|. */
 static inline double mc_least_softening(const mc_law *l) {
     const mc_strength residual = mc_strength_at(l, 1.0), *peak = &l->peak;
     const double lost = peak->k - residual.k, sine = peak->sine, dilation = peak->dilation;
@@ -261,57 +266,32 @@ static inline double mc_least_softening(const mc_law *l) {
     return lost * plastic / falls;
 }
 
-static inline int mc_create(const ab_host *host, const mc_settings *s, void **self) {
-    char text[300] = "";
+static inline int mc_create(const ab_host *host, const mc_settings *settings, void **self) {
+    const soil_strength s = settings->strength;
+    const double tension = settings->tension;
     mc_law made = {.host = host,
-                   .elastic = soil_elastic_of(s->E, s->nu),
-                   .cohesion = s->cohesion,
-                   .friction = tan(s->friction),
-                   .dilation = tan(s->dilation),
-                   .cohesion_change = s->residual_cohesion - s->cohesion,
-                   .friction_change = tan(s->residual_friction) - tan(s->friction),
-                   .dilation_change = tan(s->residual_dilation) - tan(s->dilation),
-                   .tension = s->tension};
-    const double degrees = 180 / acos(-1.0);
-    if (isfinite(s->tension) && s->cohesion > 0) made.tension_change = s->tension * (s->residual_cohesion / s->cohesion - 1);
+                   .elastic = soil_elastic_of(settings->E, settings->nu),
+                   .cohesion = s.cohesion,
+                   .friction = tan(s.friction),
+                   .dilation = tan(s.dilation),
+                   .cohesion_change = s.residual_cohesion - s.cohesion,
+                   .friction_change = tan(s.residual_friction) - tan(s.friction),
+                   .dilation_change = tan(s.residual_dilation) - tan(s.dilation),
+                   .tension = tension};
+    if (isfinite(tension) && s.cohesion > 0) made.tension_change = tension * (s.residual_cohesion / s.cohesion - 1);
     made.peak = mc_strength_at(&made, 0.0);
-    if (s->residual_cohesion > s->cohesion)
-        snprintf(text, sizeof text, "residual_cohesion %g Pa is above the cohesion %g Pa: softening only goes down", s->residual_cohesion,
-                 s->cohesion);
-    else if (s->residual_friction > s->friction)
-        snprintf(text, sizeof text, "residual_friction %g deg is above the friction %g deg: softening only goes down",
-                 s->residual_friction * degrees, s->friction * degrees);
-    else if (s->dilation > s->friction)
-        snprintf(text, sizeof text,
-                 "dilation %g deg is above the friction %g deg: such a soil would make energy; give a dilation of at most the friction",
-                 s->dilation * degrees, s->friction * degrees);
-    else if (s->residual_dilation > s->dilation)
-        snprintf(text, sizeof text, "residual_dilation %g deg is above the dilation %g deg: softening only goes down",
-                 s->residual_dilation * degrees, s->dilation * degrees);
-    else if (s->residual_dilation > s->residual_friction)
-        snprintf(text, sizeof text,
-                 "at the residual the dilation of %g deg would be above the friction of %g deg, and make energy; give a residual_dilation "
-                 "of at most that",
-                 s->residual_dilation * degrees, s->residual_friction * degrees);
-    else if (isfinite(s->tension) && s->tension > made.peak.apex)
-        snprintf(text, sizeof text,
-                 "tension %g Pa is more than the apex of the surface, cohesion/tan(friction) = %g Pa, bears: give less, or leave it out "
-                 "(no cut-off)",
-                 s->tension, made.peak.apex);
-    else if (s->cohesion == 0 && s->friction == 0)
-        snprintf(text, sizeof text, "neither cohesion nor friction: such a soil bears no shear at all; give one of them");
-    if (text[0]) return soil_say(host, text), -1;
-    const bool softens = made.cohesion_change < 0 || made.friction_change < 0 || made.dilation_change < 0;
-    if (soil_softening_read(host, s->softening, softens, &made.softening) != 0) return -1;
-    const double least = softens ? mc_least_softening(&made) : 0;
-    if (softens && made.softening.end <= least) {
-        snprintf(text, sizeof text,
-                 "the cohesion falls to its residual within a plastic strain of %g, faster than elasticity can unload: it must be above %g "
-                 "(a longer softening_strain or "
-                 "softening_slip, a smaller length, or a stiffer soil)",
-                 made.softening.end, least);
+    if (soil_strength_refused(host, &s)) return -1;
+    if (isfinite(tension) && tension > made.peak.apex) {
+        char text[240];
+        snprintf(
+            text, sizeof text,
+            "tension %g Pa is more than the apex of the surface, cohesion/tan(friction) = %g Pa, bears: give less, or leave it out (no "
+            "cut-off)",
+            tension, made.peak.apex);
         return soil_say(host, text), -1;
     }
+    if (soil_softening_read(host, settings->softening, soil_softens(&s), &made.softening) != 0) return -1;
+    if (soil_softens(&s) && soil_softening_refused(host, made.softening, mc_least_softening(&made))) return -1;
     mc_law *law = host->allocate(host->context, sizeof *law);
     if (!law) return -1;
     *law = made;

@@ -1,7 +1,8 @@
 /* principal.h: principal values and directions of a symmetric tensor, shared by the materials that think in principal stresses.
  *
- * Tensors are six numbers (xx, yy, zz, xy, yz, zx), in plane strain and axisymmetry with yz = zx = 0: there z is a principal direction and the other two are had in
- * closed form; in space by Jacobi's rotations (Golub and Van Loan 2013, section 8.5), which keep the directions orthogonal to rounding where values coincide. */
+ * Tensors are six numbers (xx, yy, zz, xy, yz, zx), in plane strain and axisymmetry with yz = zx = 0: there z is a principal direction
+ * and the other two are had in closed form; in space by Jacobi's rotations (Golub and Van Loan 2013, section 8.5), which keep the
+ * directions orthogonal to rounding where values coincide. */
 #ifndef AB_PRINCIPAL_H
 #define AB_PRINCIPAL_H
 

@@ -1,10 +1,13 @@
-/* soil.h: what the elastoplastic soils have in common: the elastic trial, the pass over a batch, softening, and what is booked as dissipated.
+/* soil.h: what the elastoplastic soils have in common: the elastic trial, the pass over a batch, softening, and what is booked as
+ * dissipated.
  *
- * A law says by `excess` how far a trial stress is outside of its surface, for eight points at once and without branches, and by `back` takes one trial stress back, in
- * scalar code that is the same whatever stands beside the point. So points that stay elastic cost a few vector operations, and an item has the same bits in any batch.
+ * A law says by `excess` how far a trial stress is outside of its surface, for eight points at once and without branches, and by `back`
+ * takes one trial stress back, in scalar code that is the same whatever stands beside the point. So points that stay elastic cost a few
+ * vector operations, and an item has the same bits in any batch.
  *
- * Plastic strain is what the trial stress lost, C : (trial - stress), whatever face, edge or apex took it: its deviatoric part is counted in `plastic_strain`
- * (the rate is sqrt(2/3 e:e)), and stress : plastic strain is dissipated (de Souza Neto, Peric and Owen 2008, chapters 7 and 8). */
+ * Plastic strain is what the trial stress lost, C : (trial - stress), whatever face, edge or apex took it: its deviatoric part is
+ * counted in `plastic_strain` (the rate is sqrt(2/3 e:e)), and stress : plastic strain is dissipated (de Souza Neto, Peric and Owen
+ * 2008, chapters 7 and 8). */
 #ifndef AB_SOIL_H
 #define AB_SOIL_H
 
@@ -37,7 +40,52 @@ static inline soil_elastic soil_elastic_of(double E, double nu) {
         "nu", "1", "Poisson's ratio", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN | AB_MAX_OPEN, 0, -1, 0.5                                   \
     }
 
-/* ---- softening ------------------------------------------------------------------------------------------------------------------------------------ */
+/* ---- strengths: at the peak and at the residual -------------------------------------------------------------------------------------- */
+
+typedef struct soil_strength {
+    double cohesion, friction, dilation;                            /* Pa, rad, rad */
+    double residual_cohesion, residual_friction, residual_dilation; /* those of the peak where there is none */
+} soil_strength;
+
+static inline void soil_say(const ab_host *host, const char *text) { host->message(host->context, text); }
+
+/* What no soil can be; says why. */
+static inline bool soil_strength_refused(const ab_host *host, const soil_strength *s) {
+    const double degrees = 90 / SOIL_RIGHT_ANGLE;
+    char text[300] = "";
+    if (s->residual_cohesion > s->cohesion)
+        snprintf(text, sizeof text, "residual_cohesion %g Pa is above the cohesion %g Pa: softening only goes down", s->residual_cohesion,
+                 s->cohesion);
+    else if (s->residual_friction > s->friction)
+        snprintf(text, sizeof text, "residual_friction %g deg is above the friction %g deg: softening only goes down",
+                 s->residual_friction * degrees, s->friction * degrees);
+    else if (s->dilation > s->friction)
+        snprintf(text, sizeof text,
+                 "dilation %g deg is above the friction %g deg: such a soil would make energy; give a dilation of at most the friction",
+                 s->dilation * degrees, s->friction * degrees);
+    else if (s->residual_dilation > s->dilation)
+        snprintf(text, sizeof text, "residual_dilation %g deg is above the dilation %g deg: softening only goes down",
+                 s->residual_dilation * degrees, s->dilation * degrees);
+    else if (s->residual_dilation > s->residual_friction)
+        snprintf(
+            text, sizeof text,
+            "at the residual the dilation of %g deg would be above the friction of %g deg, and make energy; give a residual_dilation of "
+            "at most that",
+            s->residual_dilation * degrees, s->residual_friction * degrees);
+    else if (s->cohesion == 0 && s->friction == 0)
+        snprintf(text, sizeof text, "neither cohesion nor friction: such a soil bears no shear at all; give one of them");
+    if (text[0]) soil_say(host, text);
+    return text[0] != '\0';
+}
+
+static inline bool soil_softens(const soil_strength *s) {
+    return s->residual_cohesion < s->cohesion || s->residual_friction < s->friction || s->residual_dilation < s->dilation;
+}
+
+/* The value where it is given, else the peak. */
+static inline double soil_residual(ab_value residual, ab_value peak) { return residual.given ? residual.real : peak.real; }
+
+/* ---- softening ----------------------------------------------------------------------------------------------------------------------- */
 
 /* Strength falls linearly over the equivalent plastic strain and stays at its residual from `end` on; end = 0: no softening. */
 typedef struct soil_softening {
@@ -61,10 +109,9 @@ typedef struct soil_softening {
     }
 enum { SOIL_SOFTENING_STRAIN, SOIL_SOFTENING_SLIP, SOIL_SOFTENING_LENGTH };
 
-static inline void soil_say(const ab_host *host, const char *text) { host->message(host->context, text); }
-
-/* Reads the three settings from `s` on. `softens`: some residual is below its peak. Returns 0, or -1 with a message. In simple shear over a band of thickness `length` the
- * equivalent plastic strain of a slip is slip/(sqrt(3) length): with it the work that the band takes does not hang on the mesh. */
+/* Reads the three settings from `s` on. `softens`: some residual is below its peak. Returns 0, or -1 with a message. In simple shear
+ * over a band of thickness `length` the equivalent plastic strain of a slip is slip/(sqrt(3) length): with it the work that the band
+ * takes does not hang on the mesh. */
 static inline int soil_softening_read(const ab_host *host, const ab_value *s, bool softens, soil_softening *made) {
     const bool strain = s[SOIL_SOFTENING_STRAIN].given, slip = s[SOIL_SOFTENING_SLIP].given, length = s[SOIL_SOFTENING_LENGTH].given;
     *made = (soil_softening){0, 0};
@@ -89,12 +136,23 @@ static inline int soil_softening_read(const ab_host *host, const ab_value *s, bo
     return 0;
 }
 
+/* Softening faster than elasticity can unload makes the stress of a strain ambiguous; `least` is the end that it must be above. */
+static inline bool soil_softening_refused(const ab_host *host, soil_softening s, double least) {
+    char text[300];
+    if (s.end > least) return false;
+    snprintf(text, sizeof text,
+             "the strength falls to its residual within a plastic strain of %g, faster than elasticity can unload: it must be above %g (a "
+             "longer softening_strain or softening_slip, a smaller length, or a stiffer soil)",
+             s.end, least);
+    return soil_say(host, text), true;
+}
+
 SOIL_INLINE double soil_share(soil_softening s, double plastic) { /* 0 at the peak, 1 at the residual */
     const double share = plastic * s.per_end;
     return share < 1.0 ? share : 1.0;
 }
 
-/* ---- the return of one point ------------------------------------------------------------------------------------------------------------------------ */
+/* ---- the return of one point --------------------------------------------------------------------------------------------------------- */
 
 typedef struct soil_answer {
     double stress[6], plastic; /* plastic: of the step */
@@ -126,9 +184,9 @@ SOIL_INLINE double soil_try(const void *law, const soil_elastic *e, soil_back ba
     return answer->plastic;
 }
 
-/* The plastic strain at the end of the step, implicitly: p = p0 + (what a return to the surface of p takes). The difference of both sides is not negative at p0; either it is
- * not at the end of the softening, where the answer is then exact, or there is a root between, found by false position with halving (Illinois; Dowell and Jarratt
- * 1971). The stress is on the surface of the p that is returned. */
+/* The plastic strain at the end of the step, implicitly: p = p0 + (what a return to the surface of p takes). The difference of both
+ * sides is not negative at p0; either it is not at the end of the softening, where the answer is then exact, or there is a root between,
+ * found by false position with halving (Illinois; Dowell and Jarratt 1971). The stress is on the surface of the p that is returned. */
 SOIL_INLINE double soil_soften(const void *law, const soil_elastic *e, soil_softening s, soil_back back, const double trial[6],
                                double plastic0, soil_answer *answer) {
     if (plastic0 >= s.end) return plastic0 + soil_try(law, e, back, trial, plastic0, answer);
@@ -157,7 +215,7 @@ SOIL_INLINE double soil_soften(const void *law, const soil_elastic *e, soil_soft
     return point;
 }
 
-/* ---- the pass over a batch -------------------------------------------------------------------------------------------------------------------------- */
+/* ---- the pass over a batch ----------------------------------------------------------------------------------------------------------- */
 
 typedef struct soil_lanes { /* eight points */
     double trial[6][SOIL_LANES], plastic[SOIL_LANES], excess[SOIL_LANES];

@@ -1,17 +1,18 @@
-/* tresca.c: undrained clay: the largest shear stress is the undrained strength, whatever the pressure; the surface of mohr_coulomb.h without friction. */
+/* tresca.c: undrained clay: the largest shear stress is the undrained strength, whatever the pressure; the surface of mohr_coulomb.h
+ * without friction. */
 #include "mohr_coulomb.h"
 
 enum { E_, NU, COHESION, TENSION, RESIDUAL_COHESION, SOFTENING };
 
 static int create(const ab_host *host, const ab_value *s, void **self) {
-    return mc_create(host,
-                     &(mc_settings){.E = s[E_].real,
-                                    .nu = s[NU].real,
-                                    .cohesion = s[COHESION].real,
-                                    .tension = s[TENSION].given ? s[TENSION].real : INFINITY,
-                                    .residual_cohesion = s[s[RESIDUAL_COHESION].given ? RESIDUAL_COHESION : COHESION].real,
-                                    .softening = s + SOFTENING},
-                     self);
+    return mc_create(
+        host,
+        &(mc_settings){.E = s[E_].real,
+                       .nu = s[NU].real,
+                       .strength = {.cohesion = s[COHESION].real, .residual_cohesion = soil_residual(s[RESIDUAL_COHESION], s[COHESION])},
+                       .tension = s[TENSION].given ? s[TENSION].real : INFINITY,
+                       .softening = s + SOFTENING},
+        self);
 }
 
 static const ab_param params[] = {

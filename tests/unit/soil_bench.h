@@ -147,8 +147,8 @@ static inline void soil_point_step(soil_point *p, const double strain[6], double
 }
 
 /* A step with some components of strain given, and others such that their stress is what `held` says (`free_` has 1 for these): Newton's
- * method with a tangent by differences, to 1e-9 of `scale`. `round`: z is strained as x is (triaxial tests), so that only x needs to be held.
- * `strain` has the given increments and takes the others as a first guess; it is left with what was found. */
+ * method with a tangent by differences, to 1e-9 of `scale`. `round`: z is strained as x is (triaxial tests), so that only x needs to be
+ * held. `strain` has the given increments and takes the others as a first guess; it is left with what was found. */
 static inline void soil_point_mixed(soil_point *p, double strain[6], const int free_[6], bool round, const double held[6], double scale) {
     int list[6], n = 0;
     for (int c = 0; c < p->components; c++)

@@ -1,5 +1,5 @@
-/* test_clay.c: modified Cam clay: isotropic lines, drained and undrained paths to the critical state against closed forms and against rates integrated by Runge and Kutta,
- * the return from random states, closed cycles, what is refused. */
+/* test_clay.c: modified Cam clay: isotropic lines, drained and undrained paths to the critical state against closed forms and against
+ * rates integrated by Runge and Kutta, the return from random states, closed cycles, what is refused. */
 #include "soil_bench.h"
 
 static const double KAPPA = 0.05, LAMBDA = 0.2, SLOPE = 1.0, VOID = 1.2, PRESSURE = 1e5, SHEAR = 4e6;
@@ -55,8 +55,8 @@ static void test_isotropic_loading_follows_both_lines_exactly(void **state) {
             }
 }
 
-/* With the volume kept, p = p0 ((M^2 + eta0^2)/(M^2 + eta^2))^(1 - kappa/lambda) from the yield point (p0, eta0) on, whatever the shape of the test, up to eta = M
- * (Roscoe and Burland 1968; Wood 1990, section 5.4). */
+/* With the volume kept, p = p0 ((M^2 + eta0^2)/(M^2 + eta^2))^(1 - kappa/lambda) from the yield point (p0, eta0) on, whatever the shape
+ * of the test, up to eta = M (Roscoe and Burland 1968; Wood 1990, section 5.4). */
 static void test_undrained_paths_follow_the_closed_form_to_the_critical_state(void **state) {
     (void)state;
     static const double ratios[] = {1, 1.5, 2.5, 8};
@@ -87,7 +87,8 @@ static void test_undrained_paths_follow_the_closed_form_to_the_critical_state(vo
             }
 }
 
-/* Under a constant lateral pressure dq = 3 dp: p = 3 p0/(3 - M) at the end, and the specific volume is that of the critical state line there. */
+/* Under a constant lateral pressure dq = 3 dp: p = 3 p0/(3 - M) at the end, and the specific volume is that of the critical state line
+ * there. */
 static void test_drained_triaxial_ends_on_the_critical_state_line(void **state) {
     (void)state;
     for (int ratio = 1; ratio <= 9; ratio *= 3) {
@@ -110,7 +111,7 @@ static void test_drained_triaxial_ends_on_the_critical_state_line(void **state) 
     }
 }
 
-/* ---- rates, integrated independently --------------------------------------------------------------------------------------------------------- */
+/* ---- rates, integrated independently ------------------------------------------------------------------------------------------------- */
 
 typedef struct rates {
     double s[4], p, pc, v; /* deviator xx, yy, zz, xy */
@@ -173,10 +174,10 @@ static void test_any_path_converges_to_the_rates(void **state) {
     }
 }
 
-/* ---- closed cycles, random states, refusals ------------------------------------------------------------------------------------------------- */
+/* ---- closed cycles, random states, refusals ------------------------------------------------------------------------------------------ */
 
-/* Around a loop of pressure and shear inside the surface: with a constant G there is an energy, and nothing is made or lost; with nu there is none (Zytynski et al. 1978), which
- * docs/materials.md says. */
+/* Around a loop of pressure and shear inside the surface: with a constant G there is an energy, and nothing is made or lost; with nu
+ * there is none (Zytynski et al. 1978), which docs/materials.md says. */
 static void test_an_elastic_loop_makes_no_energy_with_a_constant_shear_modulus(void **state) {
     (void)state;
     for (int constant = 0; constant < 2; constant++) {

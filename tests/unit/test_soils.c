@@ -1,4 +1,5 @@
-/* test_soils.c: soils along triaxial, plane-strain and shear paths against closed forms; faces, edges, apex and cut-off; softening; what is refused; batches. */
+/* test_soils.c: soils along triaxial, plane-strain and shear paths against closed forms; faces, edges, apex and cut-off; softening; what
+ * is refused; batches. */
 #include "plugins/material/principal.h"
 #include "soil_bench.h"
 
@@ -11,7 +12,7 @@ static double passive(double degrees) { return (1 + sine(degrees)) / (1 - sine(d
 /* The axial pressure that a sample under the lateral pressure `side` bears by Mohr and Coulomb. */
 static double strength(double c, double phi, double side) { return side * passive(phi) + 2 * c * sqrt(passive(phi)); }
 
-/* ---- principal stresses ------------------------------------------------------------------------------------------------------------- */
+/* ---- principal stresses -------------------------------------------------------------------------------------------------------------- */
 
 static void test_principal_values_and_directions_make_the_tensor_again(void **state) {
     (void)state;
@@ -42,7 +43,7 @@ static void test_principal_values_and_directions_make_the_tensor_again(void **st
     }
 }
 
-/* ---- Mohr-Coulomb, Tresca, Drucker-Prager along paths ------------------------------------------------------------------------------------- */
+/* ---- Mohr-Coulomb, Tresca, Drucker-Prager along paths -------------------------------------------------------------------------------- */
 
 static soil_bench *mohr_coulomb(double c, double phi, double psi) {
     return soil_bench_make("mohr-coulomb",
@@ -58,7 +59,8 @@ static void press(soil_point *p, double pressure) {
     }
 }
 
-/* Squeezes along y (or stretches, with a negative step) under the lateral pressure `side`: along x, and along z too unless z keeps its strain. */
+/* Squeezes along y (or stretches, with a negative step) under the lateral pressure `side`: along x, and along z too unless z keeps its
+ * strain. */
 static void squeeze(soil_point *p, double side, bool plane, double step, int steps) {
     double strain[6] = {0, -step, 0, 0, 0, 0};
     const int held[6] = {1};
@@ -112,8 +114,8 @@ static void test_plane_strain_compression_reaches_the_strength_with_the_middle_s
     }
 }
 
-/* Simple shear under a constant pressure on the plane: at the end nothing elastic moves, x does not stretch, and by Davis (1968) the strength of the plane is
- * (c cos(phi) cos(psi) + pressure sin(phi) cos(psi))/(1 - sin(phi) sin(psi)), and it opens by tan(psi). */
+/* Simple shear under a constant pressure on the plane: at the end nothing elastic moves, x does not stretch, and by Davis (1968) the
+ * strength of the plane is (c cos(phi) cos(psi) + pressure sin(phi) cos(psi))/(1 - sin(phi) sin(psi)), and it opens by tan(psi). */
 static void test_simple_shear_reaches_the_strength_of_davis(void **state) {
     (void)state;
     static const double soils[][3] = {{1e4, 30, 10}, {1e4, 30, 30}, {0, 35, 0}, {0, 35, 15}, {2e4, 0, 0}};
@@ -211,7 +213,7 @@ static void test_drucker_prager_meets_mohr_coulomb_where_it_is_matched(void **st
             }
 }
 
-/* ---- softening ------------------------------------------------------------------------------------------------------------------------------- */
+/* ---- softening ----------------------------------------------------------------------------------------------------------------------- */
 
 static void test_softening_falls_linearly_to_the_residual(void **state) {
     (void)state;
@@ -275,7 +277,7 @@ static void test_softening_friction_leaves_the_residual_strength(void **state) {
     }
 }
 
-/* ---- what is refused --------------------------------------------------------------------------------------------------------------------------- */
+/* ---- what is refused ----------------------------------------------------------------------------------------------------------------- */
 
 static void refused(const char *name, const soil_setting *settings, const char *why) {
     soil_bench *b = soil_bench_open(name);
@@ -341,7 +343,7 @@ static void test_a_strain_that_is_not_a_number_is_flagged_and_said(void **state)
             }
 }
 
-/* ---- batches --------------------------------------------------------------------------------------------------------------------------------------- */
+/* ---- batches ------------------------------------------------------------------------------------------------------------------------- */
 
 /* n items at once or one by one: the same bits; old state is only read; nothing is written beside the output. */
 static void test_a_batch_of_soils_is_its_items(void **state) {

@@ -1,8 +1,9 @@
-/* test_soils_fuzz.c: soils from random states by random steps, a million times: never outside of the surface by more than 1e-10 of the stress there, on it where something
- * plastic happened, the flow where the flow rule allows it, nothing dissipated that is negative, and no answer that is not a number.
+/* test_soils_fuzz.c: soils from random states by random steps, a million times: never outside of the surface by more than 1e-10 of the
+ * stress there, on it where something plastic happened, the flow where the flow rule allows it, nothing dissipated that is negative, and
+ * no answer that is not a number.
  *
- * The scale of every tolerance is the larger of the stress that is left and of what the soil bears without pressure (2 c cos phi): not the trial stress, which may be larger by
- * many orders. Steps of strain go from 1e-9 to 1e6. */
+ * The scale of every tolerance is the larger of the stress that is left and of what the soil bears without pressure (2 c cos phi): not
+ * the trial stress, which may be larger by many orders. Steps of strain go from 1e-9 to 1e6. */
 #include "plugins/material/principal.h"
 #include "soil_bench.h"
 
@@ -87,8 +88,9 @@ static double outside(const soil_case *k, const surface *f, const double sorted[
     return fmax(slip, sorted[0] - f->T);
 }
 
-/* Whether the plastic strain is one that the faces which the stress lies on allow: no other stress that is inside of all their potentials would take more work from it
- * (von Mises 1928, for the potential in place of the surface). In the principal directions of the trial stress. */
+/* Whether the plastic strain is one that the faces which the stress lies on allow: no other stress that is inside of all their
+ * potentials would take more work from it (von Mises 1928, for the potential in place of the surface). In the principal directions of
+ * the trial stress. */
 static void flow_is_allowed(const soil_case *k, const surface *f, const double s[3], const double plastic[3], double size) {
     const double scale = fmax(f->scale, fmax(fabs(s[0]), fabs(s[2]))), flow = fabs(plastic[0]) + fabs(plastic[1]) + fabs(plastic[2]);
     for (int n = 0; n < 12; n++) {
@@ -159,7 +161,8 @@ static void one(const soil_case *k, const soil_bench *b, int components, size_t 
     if (strcmp(k->name, "drucker-prager") != 0) flow_is_allowed(k, &f, p.value, plastic, (size + scale) / G);
 }
 
-/* Fills item i: a state from an earlier step or a random one, also special ones (all principal stresses equal, two equal, none), and a step of any size. */
+/* Fills item i: a state from an earlier step or a random one, also special ones (all principal stresses equal, two equal, none), and a
+ * step of any size. */
 static void fill(const soil_case *k, soil_bench *b, int components, size_t i, size_t ld, int again) {
     const double G = k->E / (2 * (1 + k->nu)), strength = k->c > 0 ? k->c : 1e3;
     const double size = pow(10, soil_uniform(0, 1) < 0.9 ? soil_uniform(-9, 0) : soil_uniform(0, 6)),

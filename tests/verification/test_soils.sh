@@ -26,7 +26,7 @@ while read -r line; do
     echo "$*"
     "$build/abut" run element.yaml --strict --quiet -j 1 -o other "$@"
 done < <(grep -E '^    abut run element.yaml --set' "$page" | sed 's/^ *//')
-[ $variants -eq 4 ]
+[ $variants -eq 5 ]
 
 # Tresca, and the cone that is matched in plane strain, bear what Mohr and Coulomb say; so does a soil without cohesion.
 soil='E: E, nu: nu, density: rho, cohesion: c'
@@ -41,6 +41,12 @@ for scene in biaxial fe_biaxial; do
         "$build/abut" run "$scenes/$scene.yaml" --strict --quiet -j 1 -o other "$@"
     done
 done
+
+# A true triaxial test: around an axis, on the edge of two faces; the radius grows by half of what the width would.
+"$build/abut" run "$scenes/fe_biaxial.yaml" --strict --quiet -j 1 -o other --set space=axisymmetric --set 'constants.wide=0.5*(1+sd)/(1-sd)'
+
+# A wall that is drawn back: Rankine's active pressure.
+"$build/abut" run "$scenes/../../cases/smooth_wall/scene.yaml" --strict --quiet -j 1 -o other --set constants.way=-1e-3
 
 # The same bits on one thread and on two.
 "$build/abut" run "$scenes/fe_biaxial.yaml" --quiet -j 1 -o one --set time.end=0.8 --set 'expect=[]'
