@@ -1,5 +1,6 @@
 /* keep.c: what a body of material points is between two steps. Blocks are kept as they lie in memory, as sums go over points in that order; what nodes hold is made
  * anew from the points, by the same passes. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +23,8 @@ static bool keep_tiles(mpm_body *body, ab_checkpoint *c, size_t blocks) {
     size_t first = 0;
     if (good && loads) {
         for (size_t k = 0; k < count && good; ++k) {
-            good = points[k] > 0 && (k == 0 || keys[k] > keys[k - 1]);
+            const int32_t far = 1 << 26, x = ab_tile_x(keys[k]), y = ab_tile_y(keys[k]); /* numbers of nodes are 32 bits */
+            good = points[k] > 0 && (k == 0 || keys[k] > keys[k - 1]) && x > -far && x < far && y > -far && y < far;
             first += ((size_t)points[k] + 7) / 8;
         }
         if (!good || first != blocks)
@@ -58,6 +60,28 @@ static bool check_ids(const mpm_body *body, ab_checkpoint *c) {
     }
     free(met);
     return good && points == body->points ? true : ab_checkpoint_refuse(c, "the points of body '%s' are damaged", body->domain.spec->name);
+}
+
+/* Points are in their tiles, or so near that the next sort finds them: every pass counts on that. */
+static bool check_places(const mpm_body *body, ab_checkpoint *c) {
+    const int32_t far = body->sort_due ? AB_TILE : 1;
+    bool good = true;
+    for (size_t k = 0; good && k < body->tile_count; ++k) {
+        const mpm_tile *tile = body->tiles + k;
+        for (uint32_t b = 0; good && tile->patch >= 0 && b < tile->blocks; ++b) {
+            int32_t node[2][8];
+            const double *block = mpm_block(body, tile->first + b);
+            for (size_t l = 0; good && l < 16; ++l) good = fabs(block[8 * ROW_X + l]) < 1e9 * body->h;
+            if (!good) break;
+            body->kernel->first(body, block, ROW_X, node);
+            for (int l = 0; l < 8; ++l)
+                for (int d = 0; d < 2; ++d) {
+                    const int32_t at = node[d][l] - (d ? tile->ty : tile->tx) * AB_TILE;
+                    good = good && at >= -far && at < AB_TILE + far;
+                }
+        }
+    }
+    return good || ab_checkpoint_refuse(c, "points of body '%s' are not where they can be", body->domain.spec->name);
 }
 
 static bool keep_points(mpm_body *body, ab_checkpoint *c) {
@@ -114,7 +138,7 @@ static bool keep_outline(mpm_body *body, ab_checkpoint *c) {
                       ab_keep_u32(c, "vertex_point", loops->point, 2 * count) && ab_keep_doubles(c, "vertex_arm", loops->arm, 4 * count);
     if (!good || !ab_checkpoint_loads(c)) return good;
     for (size_t k = 0; k < count; ++k)
-        if (loops->next[k] >= count || loops->prior[k] >= count || loops->point[2 * k] >= body->born ||
+        if (loops->next[k] >= count || loops->prior[loops->next[k]] != k || loops->point[2 * k] >= body->born ||
             loops->point[2 * k + 1] >= body->born)
             return ab_checkpoint_refuse(c, "the outline of body '%s' is damaged", body->domain.spec->name);
     return true;
@@ -127,5 +151,5 @@ void mpm_keep(ab_domain *domain, ab_checkpoint *c) {
         ab_keep_doubles(c, "wave_speed", &body->wave_speed, 1) && ab_keep_doubles(c, "largest_speed", &body->largest_speed, 1) &&
         ab_keep_doubles(c, "last_strain", &body->last_strain, 1) && ab_keep_struct(c, "energy", &body->energy) &&
         ab_keep_struct(c, "motion", &body->motion) && ab_keep_plugin(c, "material", &body->material->loaded->class_, body->self);
-    if (good && ab_checkpoint_loads(c)) body->scattered = false;
+    if (good && ab_checkpoint_loads(c)) check_places(body, c), body->scattered = false;
 }
