@@ -27,7 +27,10 @@ ab_status fem_fields_create(fem_body *body, ab_report *report) {
     if (!body->fields) return ab_report_failure(report, "no memory for the list of fields of body '%s'", body->domain.spec->name);
     for (size_t f = 0; f < FIXED_FIELDS; ++f) {
         if (!strcmp(FIELDS[f].name, "deformation-gradient") && body->rows.gradient < 0) continue;
-        body->fields[body->field_count++] = FIELDS[f];
+        ab_field field = FIELDS[f];
+        if (body->element->axisymmetric && !strcmp(field.name, "mass")) field.unit = "kg"; /* of rings */
+        if (body->element->axisymmetric && !strcmp(field.name, "volume")) field.unit = "m3";
+        body->fields[body->field_count++] = field;
     }
     for (uint32_t s = 0; s < class_->nstate; ++s)
         body->fields[body->field_count++] =

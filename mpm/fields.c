@@ -25,7 +25,10 @@ ab_status mpm_fields_create(mpm_body *body, ab_report *report) {
     for (size_t f = 0; f < FIXED_FIELDS; ++f) {
         if (!strcmp(FIELDS[f].name, "displacement") && !body->birth) continue;
         if (!strcmp(FIELDS[f].name, "deformation-gradient") && body->rows.gradient < 0) continue;
-        body->fields[body->field_count++] = FIELDS[f];
+        ab_field field = FIELDS[f];
+        if (body->axisymmetric && !strcmp(field.name, "mass")) field.unit = "kg"; /* of rings */
+        if (body->axisymmetric && !strcmp(field.name, "volume")) field.unit = "m3";
+        body->fields[body->field_count++] = field;
     }
     for (uint32_t s = 0; s < class_->nstate; ++s)
         body->fields[body->field_count++] =

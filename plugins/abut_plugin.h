@@ -13,6 +13,7 @@
  *   units        SI everywhere: m, kg, s, N, Pa. The host converts what the user wrote.
  *   sign         tension is positive.
  *   components   stress, strain: (xx, yy, zz, xy) in plane strain, (xx, yy, zz, xy, yz, zx) in 3-D;
+ *                axisymmetric scenes have the rows of plane strain, x the radius, y the axis, zz of hoops;
  *                strain increments hold *engineering* shear (gamma_xy = 2 eps_xy), so that the work is the plain
  *                sum of products of the components;
  *                deformation gradient (xx, xy, yx, yy, zz) in plane strain, row by row (9) in 3-D;
