@@ -125,6 +125,10 @@ static bool step(ab_check *check, contact_bench *b, const ab_check_instance *ins
         memcpy(before, b->impulse, sizeof before);
         if (respond(b, instance, 0, POINTS) != 0) return false;
         apply(b, before);
+        double change = 0.0, largest = 0.0;
+        for (size_t k = 0; k < 3 * LD; k++)
+            change = fmax(change, fabs(b->impulse[k] - before[k])), largest = fmax(largest, fabs(b->impulse[k]));
+        if (change <= 1e-14 * largest) break;
     }
     return true;
 }
@@ -362,8 +366,11 @@ static void keep_unasked(ab_check *check) { for_all(check, 8, unasked); }
 
 static void numbers(ab_check *check, const ab_value *settings, ab_check_instance *instance, uint32_t dimension) {
     static const double GAP[] = {0.0, 1e-3, 0.5, -1e-6, -1e-2, -0.3}, MASS[] = {1.0, 0.0, 1e-12, 1e6}, SPEED[] = {0.1, 0.0, 1e3};
+    static contact_bench plain;
+    prepare(check, &plain, instance, settings, dimension);
     for (int n = 0; n < 6 * 4 * 3; n++) {
-        prepare(check, &one, instance, settings, dimension);
+        one = plain;
+        point_at(&one);
         for (size_t i = 0; i < POINTS; i++) {
             one.gap[i] = GAP[n % 6];
             one.normal_mass[i] = MASS[n / 6 % 4];
@@ -409,7 +416,7 @@ static void keep_finite(ab_check *check) { for_all(check, AB_CHECK_VARIANTS, num
  * up to k (v dt)^2/8, which is less than half of the kinetic energy where the step is stable. */
 static void dissipation(ab_check *check, const ab_value *settings, ab_check_instance *instance, uint32_t dimension) {
     static const double OWED = 0.5, LIKE = 1e-9;
-    enum { STEPS = 240 };
+    enum { STEPS = 160 };
     double taken[POINTS] = {0}, most[POINTS] = {0}, moved[POINTS] = {0};
     begin(check, &one, dimension);
     for (size_t i = 0; i < POINTS; i++) one.gap[i] = ab_check_uniform(check, 1e-6, 4e-5);
@@ -445,7 +452,7 @@ static void dissipation(ab_check *check, const ab_value *settings, ab_check_inst
                       (int)STEPS, (int)POINTS, -all, largest, ab_check_words(check, settings, words, sizeof words));
     }
 }
-static void keep_dissipation(ab_check *check) { for_all(check, AB_CHECK_VARIANTS, dissipation); }
+static void keep_dissipation(ab_check *check) { for_all(check, 12, dissipation); }
 
 const ab_check_promise ab_check_response[] = {
     {"again", "the same input gives the same bits: asked again, and from an instance made anew", keep_again, true},
