@@ -214,6 +214,8 @@ static ab_status check_file(const ab_command_line *line, const char *path, bool 
     ab_plugin_file file;
     ab_refusal refusal;
     if (!realpath(path, full)) return ab_report_error(report, AB_NOWHERE, "cannot read the plugin '%s': %s", path, strerror(errno));
+    if (!line->force_plugins && !ab_plugin_is_safe(full, &refusal))
+        return ab_report_error(report, AB_NOWHERE, "plugin %s %s", full, refusal.text);
     if (!ab_plugin_load(full, &file, &refusal)) return ab_report_error(report, AB_NOWHERE, "plugin %s %s", full, refusal.text);
     ab_status status = AB_OK;
     for (uint32_t k = 0; status == AB_OK && k < file.plugin.class_count; k++) {
@@ -229,6 +231,7 @@ static ab_status check_file(const ab_command_line *line, const char *path, bool 
 static ab_status check_name(const ab_command_line *line, const char *name, bool *kept, ab_report *report) {
     ab_registry *registry = NULL;
     AB_TRY(ab_registry_create(line->plugin_path, &registry, report));
+    if (line->force_plugins) ab_registry_force(registry);
     ab_status status = ab_registry_load_all(registry, report);
     size_t found = 0;
     for (size_t k = 0; status == AB_OK && k < ab_registry_count(registry); k++) {

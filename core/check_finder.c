@@ -113,6 +113,49 @@ static void look_again(void *self, const ab_trace *a, const ab_trace *b, ab_poin
     free_found(&first), free_found(&second);
 }
 
+/* ---- saved and loaded ------------------------------------------------------------------------------------------------------------------ */
+
+static struct {
+    char bytes[1 << 20];
+    size_t count, read;
+} saved;
+
+static int write_saved(void *context, const void *bytes, size_t count) {
+    (void)context;
+    if (count > sizeof saved.bytes - saved.count) return -1;
+    memcpy(saved.bytes + saved.count, bytes, count);
+    saved.count += count;
+    return 0;
+}
+
+static int read_saved(void *context, void *bytes, size_t count) {
+    (void)context;
+    if (count > saved.count - saved.read) return -1;
+    memcpy(bytes, saved.bytes + saved.read, count);
+    saved.read += count;
+    return 0;
+}
+
+/* An instance that has just been made and loads what this one saves finds the same points. */
+static void look_saved(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
+    const ab_stream stream = {.struct_size = sizeof stream, .write = write_saved, .read = read_saved};
+    void *fresh = NULL;
+    saved.count = saved.read = 0;
+    if (now.guard.class_.save(self, &stream) != 0) ab_check_fail(now.check, "save failed in the middle of a run: %s", now.service->message);
+    if (now.guard.class_.create(&now.service->host, now.settings, &fresh) != 0)
+        ab_check_fail(now.check, "create refuses settings that it took before");
+    if (now.guard.class_.load(fresh, &stream) != 0)
+        ab_check_fail(now.check, "load failed on the %zu bytes that save wrote: %s", saved.count, now.service->message);
+    if (saved.read != saved.count) ab_check_fail(now.check, "save wrote %zu bytes and load read %zu of them", saved.count, saved.read);
+    if (find(fresh, a, b, out) != 0) return;
+    found second = copy_found(out);
+    if (find(self, a, b, out) != 0) return;
+    found first = copy_found(out);
+    same_found(&first, &second, 0.0, "from an instance that loaded what this one had saved");
+    free_found(&first), free_found(&second);
+    now.guard.class_.destroy(fresh);
+}
+
 /* ---- turned by a right angle: what lies along the grid still does --------------------------------------------------------------------- */
 
 enum { TURNED = 16 };
@@ -256,6 +299,25 @@ static void keep(ab_check *check, ab_promise promise, void (*look)(void *, const
 
 static void keep_find(ab_check *check) { keep(check, AB_PROMISE_CRASH, NULL, AB_CHECK_VARIANTS); }
 static void keep_again(ab_check *check) { keep(check, AB_PROMISE_NONE, look_again, 4); }
+static void keep_saved(ab_check *check) {
+    if (!check->loaded->class_.save) ab_check_skip(check, "the class has no save and load: nothing is remembered");
+    keep(check, AB_PROMISE_NONE, look_saved, 4);
+}
+/* Without save and load an instance made anew has to do. */
+static void look_anew(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
+    void *fresh = NULL;
+    if (now.guard.class_.save) return;
+    if (now.guard.class_.create(&now.service->host, now.settings, &fresh) != 0)
+        ab_check_fail(now.check, "create refuses settings that it took before");
+    if (find(fresh, a, b, out) != 0) return;
+    found second = copy_found(out);
+    if (find(self, a, b, out) != 0) return;
+    found first = copy_found(out);
+    same_found(&first, &second, 0.0, "from an instance made anew (what it remembers needs save and load)");
+    free_found(&first), free_found(&second);
+    now.guard.class_.destroy(fresh);
+}
+static void keep_anew(ab_check *check) { keep(check, AB_PROMISE_NONE, look_anew, 4); }
 static void keep_turned(ab_check *check) { keep(check, AB_PROMISE_NONE, look_turned, 1); }
 static void keep_old(ab_check *check) { keep(check, AB_PROMISE_OLD, NULL, 2); }
 static void keep_arrays(ab_check *check) { keep(check, AB_PROMISE_ARRAYS, NULL, 4); }
@@ -265,6 +327,8 @@ static void keep_momentum(ab_check *check) { keep(check, AB_PROMISE_MOMENTUM, NU
 const ab_check_promise ab_check_finder[] = {
     {"find", "contact points where a block runs into another, and no error", keep_find, false},
     {"again", "the same bodies give the same points, bit by bit", keep_again, true},
+    {"anew", "an instance made anew finds the same points, where the class has no save and load", keep_anew, false},
+    {"save-load", "an instance that loads what another saved finds the same points", keep_saved, false},
     {"frame", "turned bodies give turned points (by a right angle, as the grid)", keep_turned, false},
     {"old-state", "what it is shown of the bodies is not written", keep_old, false},
     {"arrays", "nothing outside of arrays is read or written; room is asked for by host->reserve", keep_arrays, false},

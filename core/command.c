@@ -15,9 +15,7 @@
 static int command_plugins(const ab_command_line *line) {
     if (line->word_count && !strcmp(line->words[0], "new")) return ab_command_plugin_new(line);
     if (line->word_count && !strcmp(line->words[0], "check")) return ab_command_plugin_check(line);
-    char *words[8] = {(char[]){"plugins"}};
-    for (int i = 0; i < line->word_count; i++) words[i + 1] = line->words[i];
-    return ab_command_plugins(line->word_count + 1, words, line->plugin_path);
+    return ab_command_plugins(line);
 }
 
 static int command_version(const ab_command_line *line) {
@@ -68,7 +66,7 @@ static const ab_command commands[] = {
      "  abut plugins check FILE.so     (or the name of a class) tries the promises that abut_plugin.h asks of plugins, one per line; --set "
      "KEY=VALUE\n"
      "                                 gives a setting, in SI. Exit 1 where one is broken",
-     AB_OPTION_PLUGIN_PATH | AB_OPTION_OUTPUT | AB_OPTION_SET, 0, 3, command_plugins},
+     AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_OUTPUT | AB_OPTION_SET, 0, 3, command_plugins},
     {"version", "", "the version, and what it was built for", NULL, 0, 0, 0, command_version},
     {"help", "[COMMAND | scene]", "this help, or more about one command, or every key of a scene file", NULL, 0, 0, 1, command_help},
     {.name = NULL},

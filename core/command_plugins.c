@@ -152,23 +152,25 @@ static ab_status show(const ab_registry *registry, const char *name, ab_report *
     return shown ? AB_OK : ab_registry_not_found(registry, 0, name, AB_NOWHERE, report);
 }
 
-int ab_command_plugins(int argc, char **argv, const char *plugin_path) {
+int ab_command_plugins(const ab_command_line *line) {
     ab_report *report = ab_report_create();
     ab_registry *registry = NULL;
     ab_status status = report ? AB_OK : AB_FAILED;
-    if (status == AB_OK && argc > 1 && strcmp(argv[1], "show") != 0)
+    if (status == AB_OK && line->word_count > 0 && strcmp(line->words[0], "show") != 0)
         status = ab_report_error(
             report, AB_NOWHERE,
-            "unknown word '%s' behind `abut plugins`; write `abut plugins`, or behind it show NAME, new KIND NAME or check NAME", argv[1]);
-    else if (status == AB_OK && argc > 1 && argc != 3)
+            "unknown word '%s' behind `abut plugins`; write `abut plugins`, or behind it show NAME, new KIND NAME or check NAME",
+            line->words[0]);
+    else if (status == AB_OK && line->word_count > 0 && line->word_count != 2)
         status = ab_report_error(report, AB_NOWHERE, "`abut plugins show` takes one name; `abut plugins` lists them");
-    if (status == AB_OK) status = ab_registry_create(plugin_path, &registry, report);
+    if (status == AB_OK) status = ab_registry_create(line->plugin_path, &registry, report);
+    if (status == AB_OK && line->force_plugins) ab_registry_force(registry);
     if (status == AB_OK) {
         status = ab_registry_load_all(registry, report); /* what is refused is said, and the rest is shown all the same */
-        if (argc == 1)
+        if (line->word_count == 0)
             list(registry);
         else {
-            const ab_status found = show(registry, argv[2], report);
+            const ab_status found = show(registry, line->words[1], report);
             if (status == AB_OK) status = found;
         }
     }

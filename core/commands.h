@@ -83,8 +83,8 @@ int ab_command_extremes(const ab_command_line *line); /* command_extremes.c */
 /* results/NAME: NAME is the scene's folder where the file is called scene.yaml, else the file without its ending. */
 void ab_command_folder(const char *scene, char *folder, size_t size);
 
-/* core/command_plugins.c: argv[0] is "plugins", then the words behind it. */
-int ab_command_plugins(int argc, char **argv, const char *plugin_path);
+/* core/command_plugins.c: the list, and `show NAME`. */
+int ab_command_plugins(const ab_command_line *line);
 
 /* `abut plugins new KIND NAME`: core/command_plugin_new.c; words[0] is "new". */
 int ab_command_plugin_new(const ab_command_line *line);
