@@ -147,13 +147,14 @@ static void frame(ab_check *check, const ab_value *settings, const ab_check_inst
             int row = 0;
             for (uint32_t s = 0; s < class_->nstate; s++) {
                 const uint32_t shape = class_->state[s].shape;
-                const bool stress = strcmp(class_->state[s].unit, "Pa") == 0;
+                const char *unit = class_->state[s].unit; /* what a step changes such a state by, at most */
+                const double least = strcmp(unit, "Pa") == 0 ? trial : strcmp(unit, "1") == 0 ? strain : 0.0;
                 const int rows = shape == AB_SCALAR      ? 1
                                  : shape == AB_VECTOR    ? (int)dimension
                                  : shape == AB_SYMMETRIC ? one.components
                                                          : one.gradients;
                 compare(check, settings, class_->state[s].name, i, two.state1 + row * BENCH_LD + i, wanted + row * BENCH_LD + i,
-                        two.state0 + row * BENCH_LD + i, rows, stress && isfinite(trial) ? trial : 0.0, &one);
+                        two.state0 + row * BENCH_LD + i, rows, isfinite(least) ? least : 0.0, &one);
                 row += rows;
             }
         }

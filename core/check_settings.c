@@ -186,7 +186,9 @@ void ab_check_settings(ab_check *check) {
     for (int n = 0; n < SEARCH && !found; n++) { /* settings that go together: others may not */
         for (uint32_t k = 0; k < class_->nparam; k++) {
             put_default(check, &plain[k], &class_->param[k]);
-            if (class_->param[k].flags & AB_REQUIRED) put_inside(check, &plain[k], &class_->param[k]);
+            if ((class_->param[k].flags & AB_REQUIRED) ||
+                (n % 2 && ab_check_uniform(check, 0.0, 1.0) < 0.5)) /* of two, one may have to be given */
+                put_inside(check, &plain[k], &class_->param[k]);
         }
         put_given(check, plain);
         found = ask(check, plain, true, "");

@@ -151,13 +151,13 @@ static bool advance(const law *l, const double strain[6], clay *c) {
 /* Item i of the batch; the same code for every batch, so that an item has the same bits in any. */
 static __attribute__((noinline)) bool follow(const law *l, const ab_batch *b, size_t i, clay *c) {
     const size_t ld = b->ld;
-    double strain[6] = {0}, largest = 0.0, stress[6] = {0};
+    double strain[6] = {0}, square = 0.0, stress[6] = {0};
     for (uint32_t k = 0; k < b->components; k++) {
         strain[k] = b->strain_increment[k * ld + i], stress[k] = b->stress0[k * ld + i];
-        if (!(fabs(stress[k]) < LARGEST)) return false;
-        largest = fmax(largest, fabs(strain[k]));
-        if (!(largest < LARGEST) || strain[k] != strain[k]) return false;
+        if (!(fabs(stress[k]) < LARGEST) || !(fabs(strain[k]) < LARGEST)) return false;
+        square += (k < 3 ? 1.0 : 0.5) * strain[k] * strain[k];
     }
+    const double largest = sqrt(square); /* sqrt(e:e): the same however the axes lie, and so is the number of parts */
     const double mean = (stress[0] + stress[1] + stress[2]) / 3;
     for (int k = 0; k < 6; k++) c->deviator[k] = k < 3 ? stress[k] - mean : stress[k];
     c->p = fmax(-mean, VANISHED * l->pressure);
