@@ -388,6 +388,8 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status != AB_OK) {
         const char *why = ab_report_first_error(report);
         snprintf(outcome, sizeof outcome, "failed: %s", why ? why : "no reason given");
+        if (!options->quiet && checkpoints.last >= 0)
+            fprintf(stderr, "the last checkpoint is of step %ld; go on with --restart %s\n", checkpoints.last, checkpoints.path);
         facts.outcome = outcome;
     } else if (stop_signal) {
         if (!options->quiet) fprintf(stderr, "stopped at t = %.9g s; go on with --restart %s\n", s->time, checkpoints.path);

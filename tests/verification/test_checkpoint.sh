@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 14
+# cost: 10
 # A run that goes on from a checkpoint in its middle, on another number of threads, has the same bits as the one that never stopped: every row of history.csv and every field, of
 # scenes of every kind. What is no checkpoint of this scene and version is refused by name, and so is one that is damaged at any place. test_checkpoint.sh BUILD
 set -u
@@ -85,6 +85,15 @@ pairs+=("$scratch/rolling" "$scratch/plain")
 [ $(wc -l <"$scratch/rolling/history.csv") -gt $(wc -l <"$scratch/new/history.csv") ] || say "the new folder has the rows before the checkpoint too"
 
 [ $wrong -eq 0 ] || exit 1
+
+# Where the watchdog has ended a run, it goes on from there with a watchdog that does not.
+flying=(--set constants.cells=40 --set constants.frame=0.02 --set 'contact[0].gap=none' --set bodies.a.basis=linear --set bodies.b.basis=linear --set 'time={end: 35, cfl: 0.9}' --set expect=[])
+run tests/verification/impact.yaml -j 1 -o "$scratch/wild" "${flying[@]}" >"$scratch/wild.log" 2>&1
+[ $? -eq 1 ] && grep -q "the run makes energy" "$scratch/wild.log" || say "the watchdog does not end a run that makes energy" "$scratch/wild.log"
+run tests/verification/impact.yaml -j 1 -o "$scratch/wild" --restart "$scratch/wild/checkpoint.abut" "${flying[@]}" --set watchdog.stop=false >"$scratch/wild.log" 2>&1 ||
+    say "a run that the watchdog has ended does not go on: exit $?" "$scratch/wild.log"
+run tests/verification/impact.yaml -j 1 -o "$scratch/tame" "${flying[@]}" --set watchdog.stop=false >"$scratch/wild.log" 2>&1 || say "exit $?" "$scratch/wild.log"
+/usr/bin/python3 tests/verification/same_results.py "$scratch/tame" "$scratch/wild" || wrong=1
 
 # refused STATUS TEXT OPTION...: the restart ends so, says that, and leaves the folder as it was.
 good=$scratch/points/checkpoint.abut
