@@ -45,6 +45,22 @@ static bool shown(const ab_trade *trade, const ab_trial *trial) {
     return trial->run.state == AB_CHILD_DONE && isfinite(trial->error) && ab_trade_cost(trade, trial) > 0;
 }
 
+/* "40, gimp": the settings without their names, which stand once above the picture. */
+static const char *values(const ab_trade *trade, const ab_trial *trial, char *text, size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t k = 0; k < trade->spec->ladder_count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", k > 0 ? ", " : "", trade->spec->ladders[k].values[trial->rung[k]]);
+    return text;
+}
+static const char *names(const ab_trade *trade, char *text, size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t k = 0; k < trade->spec->ladder_count && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", k > 0 ? ", " : "", trade->spec->ladders[k].name);
+    return text;
+}
+
 void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {0, 0};
     for (size_t i = 0; i < trade->count; i++) {
@@ -60,15 +76,16 @@ void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
         ab_picture_end(svg);
         return;
     }
+    char settings[2000];
     if (!(high[1] > 0)) low[1] = 1e-16, high[1] = 1e-15;
     const axis x = axis_of(low[0], high[0], LEFT, WIDE - RIGHT), y = axis_of(low[1], high[1], HIGH - BELOW, ABOVE);
     grid(svg, &x, &y, trade->spec->wall);
     if (trade->spec->tolerance > pow(10, y.low) && trade->spec->tolerance < pow(10, y.high))
         ab_picture_line(svg, x.from, place(&y, trade->spec->tolerance), x.to, place(&y, trade->spec->tolerance),
                         "stroke:#999;stroke-dasharray:6 4");
+    ab_picture_words(svg, WIDE - 8, ABOVE - 4, "end", names(trade, settings, sizeof settings));
     /* the front from cheap to dear: what is to be had for so much time */
     double before[2] = {NAN, NAN}, cost = 0, label = ABOVE;
-    char settings[2000];
     for (;;) {
         const ab_trial *next = NULL;
         for (size_t i = 0; i < trade->count; i++)
@@ -85,7 +102,7 @@ void ab_trade_picture(const ab_trade *trade, ab_text *svg) {
         label = fmax(label + 14, at[1]);
         if (label > HIGH - 8) label = HIGH - 8;
         ab_picture_line(svg, at[0], at[1], x.to + 6, label - 4, "stroke:#c22;stroke-width:0.3");
-        ab_picture_words(svg, x.to + 8, label, "start", ab_trade_settings(trade, next, settings, sizeof settings));
+        ab_picture_words(svg, x.to + 8, label, "start", values(trade, next, settings, sizeof settings));
         before[0] = at[0], before[1] = at[1];
     }
     for (size_t i = 0; i < trade->count; i++) {
