@@ -128,6 +128,9 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
     tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
     if (scene->space == AB_SPACE_PLANE_STRAIN)
         tell(text, number++, "third dimension", "plane strain: no third component of velocity and force, no yz and zx of stress", NULL);
+    else
+        tell(text, number++, "torsion",
+             "axisymmetric: no velocity about the axis, no yz and zx of stress; plane strain runs passes without hoops", NULL);
     double cells = 0.0;
     bool known = true;
     for (size_t b = 0; b < schedule->body_count; b++) {

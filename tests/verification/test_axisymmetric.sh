@@ -1,6 +1,6 @@
 #!/bin/bash
-# cost: 20
-# Scenes about an axis by other bases, meshes, elements and pairs of methods than the scenes themselves say; and the example of docs/axisymmetric.md.
+# cost: 22
+# Scenes about an axis by other bases, meshes, elements and pairs of methods than the scenes themselves say; columns of the plane about an axis; and the example of docs/axisymmetric.md.
 # test_axisymmetric.sh BUILD
 build=$(realpath "${1:?the build folder}")
 cd "$(dirname "$0")/../.." || exit 1
@@ -44,6 +44,18 @@ variant "layers, elements that do not match" axi_two_tubes "$inner" "$outer" "co
 column="bodies.column={method: finite-elements, material: soil, gravity: false, mesh: {box: [[0, 0], [R, L]], elements: [5, 20], type: q4}, fix: [{where: {side: bottom}, velocity: [null, 0]}, {where: {side: right}, velocity: [0, null]}]}"
 variant "piston on elements" axi_piston "$column" "contact[0].algorithm=point-to-segment"
 variant "Hill, q8r" axi_hill "bodies.tube={method: finite-elements, material: steel, mesh: {box: [[a, 0], [b, '2*h']], elements: [10, 1], type: q8r}, $fix}" constants.share=1 time.cfl=0.9
+
+# Columns about the axis that are confined, or have nu = 0, are those of the plane: all that does not depend on their cross section.
+intensive() { # scene, how many of its first expects
+    "$build/abut" run tests/verification/$1.yaml --quiet -j 1 -o "$scratch/column" --set space=axisymmetric &&
+        python3 -c "import json, sys; e = json.load(open('$scratch/column/summary.json'))['expects'][:$2]; [print('        ', x['name'], x['value'], x['reference']) for x in e if not x['pass']]; sys.exit(not all(x['pass'] for x in e))" &&
+        echo "passed  $1 about an axis" || { echo "MISSED  $1 about an axis"; missed=$((missed + 1)); }
+}
+intensive self_weight 4
+intensive column 6
+intensive column_neo_hookean 6
+intensive column_von_mises 6
+intensive pulse 6
 
 wrong() { # setting, message
     if "$build/abut" check tests/verification/axi_piston.yaml --set "$1" 2>&1 | grep -q "$2"; then echo "passed  refused: $1"; else echo "MISSED  not refused: $1"; missed=$((missed + 1)); fi
