@@ -111,6 +111,17 @@ if [ "$(id -u)" -eq 0 ]; then
     [ $? -eq 2 ] && grep -q "can be written to by the group 12345" "$scratch/load.log" || say "a plugin that a group can write to is loaded" "$scratch/load.log"
 fi
 
+# A script of Gmsh, which may run commands, is no mesh, whatever its name.
+for head in '' '$MeshFormat
+4.1 0 8
+$EndMeshFormat'; do
+    printf '%s\nSystemCall "touch %s/pwned";\nPoint(1) = {0, 0, 0, 1};\n' "$head" "$scratch" >"$scratch/beam.msh"
+    "$build/abut" check "$scratch/scene.yaml" --set 'bodies={beam: {method: finite-elements, material: rubber, mesh: {file: beam.msh, type: q4}}}' >"$scratch/mesh.log" 2>&1
+    "$build/abut" plan "$scratch/scene.yaml" --set 'bodies={beam: {method: finite-elements, material: rubber, mesh: {file: beam.msh, type: q4}}}' >"$scratch/mesh.log" 2>&1
+    [ $? -eq 2 ] && grep -q "^error: \|error: body 'beam'" "$scratch/mesh.log" || say "a script of Gmsh is taken for a mesh" "$scratch/mesh.log"
+    [ ! -e "$scratch/pwned" ] || say "a script of Gmsh has run a command"
+done
+
 # No shell: nothing calls one, and a scene's texts reach no command line.
 found=$(grep -nE '\b(system|popen|execl|execlp|execvp|wordexp|posix_spawnp?)[[:space:]]*\(' core/*.[ch] mpm/*.[ch] fem/*.[ch] contact/*.[ch] plugins/*/*.[ch] plugins/*.h)
 [ -z "$found" ] || say "something may start a shell: $found"
