@@ -61,7 +61,7 @@ static ab_status read_scene(const ab_command_line *line, ab_registry **registry,
 
 /* Refusal is an answer, but where not one value of a ladder is accepted the path is wrong: said before anything runs. */
 static ab_status check_values(const ab_command_line *line, const ab_extremes *extremes, ab_registry *registry, ab_report *report) {
-    ab_override *list = calloc(line->override_count + 2 * AB_EXTREMES_PATHS, sizeof *list);
+    ab_override *list = calloc(line->override_count + 4 * AB_EXTREMES_PATHS, sizeof *list);
     if (list == NULL) return ab_report_failure(report, "no memory");
     if (line->override_count > 0) memcpy(list, line->overrides, line->override_count * sizeof *list);
     ab_status status = AB_OK;
@@ -122,9 +122,10 @@ static ab_status drive(const ab_command_line *line, const ab_scene *scene, ab_re
             printf("  %s holds extremes.csv%s extremes.json%s\n", extremes.runs.folder, scene->extremes.has_map ? "," : " and",
                    scene->extremes.has_map ? " and map.svg" : "");
         }
-        bool holds = true;
-        for (size_t q = 0; q < scene->extremes.count; q++) holds = holds && ab_extremes_fault(&extremes, q) == NULL;
-        if (written == AB_OK && line->strict && !holds) written = AB_MISSED;
+        bool as_said = true; /* what is open must not hold: the word is to go when it does */
+        for (size_t q = 0; q < scene->extremes.count; q++)
+            as_said = as_said && (ab_extremes_fault(&extremes, q) == NULL) == (scene->extremes.quantities[q].open == NULL);
+        if (written == AB_OK && line->strict && !as_said) written = AB_MISSED;
         if (!stopped) status = written;
     }
     ab_extremes_clear(&extremes);

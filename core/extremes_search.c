@@ -59,6 +59,7 @@ static double rung_value(const ab_extreme *e, size_t rung) {
 /* ---- samples --------------------------------------------------------------------------------------------------------------------------------- */
 
 static size_t put_settings(const ab_extreme *e, const char *text, ab_override *settings, size_t count) {
+    for (size_t w = 0; w < e->with_count; w++) settings[count++] = e->with[w];
     for (size_t p = 0; p < e->path_count; p++) settings[count++] = (ab_override){e->paths[p], text};
     return count;
 }
@@ -91,7 +92,7 @@ static ab_status add(ab_extremes *x, size_t quantity, size_t rung, double value,
     s->error = s->tolerance = s->remainder = NAN;
     const ab_extreme *e = &x->spec->quantities[quantity], *other = second != SIZE_MAX ? &x->spec->quantities[second] : NULL;
     s->value = describe(e, rung, value, s->text, s->shown);
-    ab_override settings[2 * AB_EXTREMES_PATHS];
+    ab_override settings[4 * AB_EXTREMES_PATHS];
     size_t count = put_settings(e, s->text, settings, 0);
     char label[400];
     snprintf(label, sizeof label, "%.100s=%s", e->name, s->shown);

@@ -58,7 +58,10 @@ static void table_row(const ab_extremes *x, size_t q, const found *f, FILE *stre
     cell(stream, x->spec->quantities[q].name, 60);
     fprintf(stream, " | %s", up_to(f, &f->right, text, sizeof text));
     fprintf(stream, " | %s", up_to(f, &f->stable, text, sizeof text));
-    fprintf(stream, " | %s | %s | ", f->refused.after != NULL ? f->refused.after->shown : "nowhere", f->fault != NULL ? "no" : "yes");
+    fprintf(stream, " | %s | %s | ", f->refused.after != NULL ? f->refused.after->shown : "nowhere",
+            f->fault == NULL                      ? "yes"
+            : x->spec->quantities[q].open != NULL ? "not yet"
+                                                  : "no");
     if (end != NULL) cell(stream, end->why, CUT);
     fprintf(stream, " |\n");
 }
@@ -111,11 +114,13 @@ void ab_extremes_table(const ab_extremes *x, FILE *stream) {
         if (!look(x, q, &f)) continue;
         tell_pieces(x, q, &f, stream);
         if (f.fault != NULL) {
-            fprintf(stream, "  %s does not hold: %s at %s: ", x->spec->quantities[q].name, ab_verdict_name(f.fault->verdict),
-                    f.fault->shown);
+            fprintf(stream, "  %s does not hold%s: %s at %s: ", x->spec->quantities[q].name,
+                    x->spec->quantities[q].open != NULL ? " yet" : "", ab_verdict_name(f.fault->verdict), f.fault->shown);
             cell(stream, f.fault->why[0] != '\0' ? f.fault->why : "not run", 600);
             fprintf(stream, "\n");
         }
+        if (f.fault == NULL && x->spec->quantities[q].open != NULL)
+            fprintf(stream, "  %s holds now: take `open` away from it\n", x->spec->quantities[q].name);
         free(f.list);
     }
     for (size_t i = 0; i < x->count; i++) unknown += x->samples[i]->verdict == AB_VERDICT_NONE;
@@ -208,6 +213,7 @@ static void json_quantity(const ab_extremes *x, size_t q, const found *f, ab_tex
     json_bracket(text, "accepted", &f->refused);
     const ab_sample *end = ending(f);
     ab_text_add(text, ",\n     \"holds\": %s", f->fault != NULL ? "false" : "true");
+    json_text(text, "open", e->open);
     json_text(text, "fault", f->fault != NULL ? f->fault->why : NULL);
     json_text(text, "fault_at", f->fault != NULL ? f->fault->shown : NULL);
     json_text(text, "how_it_ends", end != NULL ? end->why : NULL);

@@ -200,6 +200,10 @@ typedef struct ab_trade_spec { /* no ladders: the scene has no `trade` */
     bool wall;                 /* cost is wall time, not processor time */
 } ab_trade_spec;
 
+typedef struct ab_override {
+    const char *path, *value;
+} ab_override; /* --set PATH=VALUE */
+
 typedef struct ab_extreme { /* of `extremes`: a quantity to drive */
     const char *name;
     const char **paths; /* as for --set; all of them get the value */
@@ -210,8 +214,11 @@ typedef struct ab_extreme { /* of `extremes`: a quantity to drive */
     size_t rungs;
     const char **values; /* in place of from and to; NULL: none */
     size_t value_count;
-    double right_to; /* NaN: not said */
-    double same;     /* 0: not asked for */
+    ab_override *with; /* what else is set meanwhile */
+    size_t with_count;
+    const char *open; /* why it does not hold yet; NULL: it must */
+    double right_to;  /* NaN: not said */
+    double same;      /* 0: not asked for */
     ab_mark mark;
 } ab_extreme;
 
@@ -263,10 +270,6 @@ typedef struct ab_scene {
     ab_extremes_spec extremes;
     struct ab_scene_private *private_; /* document, parsers, arena */
 } ab_scene;
-
-typedef struct ab_override {
-    const char *path, *value;
-} ab_override; /* --set PATH=VALUE */
 
 /* Reads, applies overrides, checks everything. On AB_BAD_INPUT the report holds every mistake and *scene is NULL. */
 ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t override_count, ab_registry *registry, ab_scene **scene,

@@ -27,6 +27,25 @@ static void take_values(ab_scene_reader *r, const ab_node *node, const char *whe
     e->value_count = node->count;
 }
 
+static void take_with(ab_scene_reader *r, const ab_node *node, const char *where, ab_extreme *e) {
+    char path[AB_WHERE];
+    ab_where_join(path, where, "with");
+    if (node->kind != AB_NODE_MAP || node->count == 0 || node->count > AB_EXTREMES_PATHS) {
+        ab_report_error(r->base.report, node->mark, "%s must be a mapping of 1 to %d paths to values, such as {bodies.bar.basis: linear}",
+                        path, AB_EXTREMES_PATHS);
+        return;
+    }
+    e->with = ab_reader_take(&r->base, node->count, sizeof *e->with);
+    for (size_t i = 0; e->with != NULL && i < node->count; i++) {
+        const char *value = ab_node_flow(r->base.arena, node->entries[i].value), *key = ab_reader_text(&r->base, node->entries[i].key);
+        if (value == NULL || key == NULL) {
+            r->base.out_of_memory = true;
+            return;
+        }
+        e->with[e->with_count++] = (ab_override){key, value};
+    }
+}
+
 /* How rungs lie between the ends: one a decade with log, else 9, unless the scene says. */
 static void take_scale(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_extreme *e) {
     const ab_key *key = ab_section_extreme.keys;
@@ -81,9 +100,11 @@ static void take_extreme(ab_scene_reader *r, const ab_node *node, const char *wh
     *e = (ab_extreme){.name = "", .mark = node->mark, .right_to = NAN};
     if (!ab_section_open(&r->base, &ab_section_extreme, node, where, v) || v[EXTREME_SET] == NULL) return;
     if (!ab_scene_take_paths(r, v[EXTREME_SET], where, &e->paths, &e->path_count)) return;
-    char *name = NULL, *value = NULL;
+    char *name = NULL, *value = NULL, *open = NULL;
     ab_read_text(&r->base, &key[EXTREME_NAME], v[EXTREME_NAME], where, &name);
     e->name = name != NULL ? name : e->paths[0];
+    if (v[EXTREME_OPEN] != NULL && ab_read_text(&r->base, &key[EXTREME_OPEN], v[EXTREME_OPEN], where, &open)) e->open = open;
+    if (v[EXTREME_WITH] != NULL) take_with(r, v[EXTREME_WITH], where, e);
     if (!take_range(r, v, where, e)) return;
     ab_read_number(&r->base, &key[EXTREME_UNTIL], v[EXTREME_UNTIL], where, &e->until);
     ab_read_number(&r->base, &key[EXTREME_SAME], v[EXTREME_SAME], where, &e->same);

@@ -479,6 +479,11 @@ static const ab_key extreme[] = {
     [EXTREME_SAME] = {"same", AB_KEY_NUMBER, .unit = "1", POSITIVE,
                       .help = "with `values`: the number that each expect looks at, as a part of its reference, must be that of the first "
                               "value to within this"},
+    [EXTREME_WITH] = {"with", AB_KEY_SECTION,
+                      .help = "mapping of further paths to the values they have meanwhile: {bodies.bar.basis: linear}"},
+    [EXTREME_OPEN] = {"open", AB_KEY_TEXT,
+                      .help =
+                          "in words, why it does not hold yet; --strict then asks that it does not, so that the word goes when it does"},
 };
 SECTION(extreme, "extremes.vary[i]", extreme, NULL, "A list.",
         "- {name: friction, set: constants.mu, from: 1e-3, to: 1e6}\n- {set: constants.turned, values: [0, 1], same: 1e-10}\n");
