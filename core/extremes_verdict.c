@@ -1,5 +1,6 @@
 /* extremes_verdict.c: whether a run was right, wrong, unstable or refused: from its exit, its ledger, its expects. */
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +25,6 @@ static double mass_of(const ab_node *root, const char *when) {
 }
 
 static void say(ab_sample *s, ab_verdict verdict, const char *format, ...) __attribute__((format(printf, 3, 4)));
-#include <stdarg.h>
 static void say(ab_sample *s, ab_verdict verdict, const char *format, ...) {
     if (verdict <= s->verdict) return; /* the worst is told */
     va_list list;

@@ -18,6 +18,11 @@ says() { # status, pattern, command ...: it ends so, and says so
     local got=$?
     [ $got -eq "$status" ] && grep -Eq "$pattern" said || { echo "        exit $got"; sed 's/^/        /' said; return 1; }
 }
+page=$(realpath "$here/../../docs/stability.md")
+sed -n '/^```yaml$/,/^```$/{/^```/!p}' "$page" >example.yaml
+must "the example of docs/stability.md" "$build/abut" extremes example.yaml -o example -q
+"$build/abut" extremes example.yaml -o example -q | grep '^|' >table
+must "its table is the one on the page" bash -c "sed -n '/the table of the example/,/^\$/{/^|/p}' '$page' | diff - table"
 cat >bar.yaml <<'SCENE' # linear elements, lumped: stable to dt c/h = 1 exactly, whatever the mesh
 abut: 1
 constants: {L: 25, cells: 10, E: 100, rho: 1, v0: 1e-4, part: 0.5, c: sqrt(E/rho), h: L/cells, w: 0.5*pi*c/L, nu: 0, mu: 0}
