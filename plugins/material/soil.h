@@ -224,6 +224,14 @@ typedef struct soil_lanes { /* eight points */
 /* Copies up to eight items, the last one again in lanes that are free: what is computed from them is then the same code in every batch. */
 static inline void soil_load(const ab_batch *b, size_t first, double strain[6][SOIL_LANES], double stress[6][SOIL_LANES], soil_lanes *l) {
     const size_t count = b->count - first < SOIL_LANES ? b->count - first : SOIL_LANES;
+    if (count == SOIL_LANES) {
+        for (uint32_t c = 0; c < b->components; c++) {
+            memcpy(strain[c], b->strain_increment + c * b->ld + first, sizeof strain[c]);
+            memcpy(stress[c], b->stress0 + c * b->ld + first, sizeof stress[c]);
+        }
+        memcpy(l->plastic, b->state0 + first, sizeof l->plastic);
+        return;
+    }
     for (uint32_t c = 0; c < b->components; c++)
         for (size_t i = 0; i < SOIL_LANES; i++) {
             const size_t from = c * b->ld + first + (i < count ? i : count - 1);
@@ -234,8 +242,8 @@ static inline void soil_load(const ab_batch *b, size_t first, double strain[6][S
 }
 
 /* Elastic trial of eight points; rows beyond the components become 0. */
-SOIL_INLINE void soil_trial(soil_elastic e, uint32_t components, const double strain[6][SOIL_LANES], const double stress[6][SOIL_LANES],
-                            soil_lanes *l) {
+SOIL_INLINE void soil_trial(soil_elastic e, uint32_t components, const double strain[restrict 6][SOIL_LANES],
+                            const double stress[restrict 6][SOIL_LANES], soil_lanes *restrict l) {
     for (size_t i = 0; i < SOIL_LANES; i++) {
         const double volumetric = e.lambda * (strain[0][i] + strain[1][i] + strain[2][i]);
         for (int c = 0; c < 3; c++) l->trial[c][i] = stress[c][i] + (volumetric + e.two_mu * strain[c][i]);
@@ -254,6 +262,22 @@ static inline void soil_store(const ab_batch *b, size_t i, const double stress[6
 static inline bool soil_is_finite(const double trial[6]) {
     for (int c = 0; c < 6; c++)
         if (!(fabs(trial[c]) < SOIL_LARGEST)) return false; /* NaN is not, either */
+    return true;
+}
+
+/* Writes the items from `first` on where all of them stay elastic, which most do most of the time; else false. */
+static inline bool soil_store_elastic(const ab_batch *b, size_t first, const soil_lanes *l) {
+    const size_t count = b->count - first < SOIL_LANES ? b->count - first : SOIL_LANES;
+    long yields = 0;
+    for (size_t i = 0; i < SOIL_LANES; i++) {
+        double size = 0.0;
+        for (int c = 0; c < 6; c++) size += fabs(l->trial[c][i]);
+        yields += !(l->excess[i] <= 0.0 && size < SOIL_LARGEST);
+    }
+    if (yields) return false;
+    for (uint32_t c = 0; c < b->components; c++) memcpy(b->stress1 + c * b->ld + first, l->trial[c], count * sizeof(double));
+    memcpy(b->state1 + first, l->plastic, count * sizeof(double));
+    memset(b->dissipation + first, 0, count * sizeof(double));
     return true;
 }
 
@@ -277,6 +301,7 @@ SOIL_INLINE int soil_update(const ab_host *host, const void *law, const soil_ela
     for (size_t first = 0; first < b->count; first += SOIL_LANES) {
         soil_load(b, first, strain, stress, &l);
         check(law, b->components, (const double(*)[SOIL_LANES])strain, (const double(*)[SOIL_LANES])stress, &l);
+        if (soil_store_elastic(b, first, &l)) continue;
         for (size_t i = 0; i < SOIL_LANES && first + i < b->count; i++) {
             double trial[6];
             for (int c = 0; c < 6; c++) trial[c] = l.trial[c][i];
