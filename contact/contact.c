@@ -199,7 +199,8 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
     const bool answered = all->answered_step == step->number;
     if (all->found_step != step->number) {
         for (size_t k = 0; k < all->count; ++k) {
-            if (all->found_step >= 0) contact_points_remember(&all->pairs[k].points);
+            if (all->found_step >= 0 && !contact_points_remember(&all->pairs[k].points))
+                return ab_report_failure(report, "no memory for what %zu contact points remember", all->pairs[k].points.view.count);
             AB_TRY(contact_find(all->pairs + k, step, report));
             if (step->number == 0) contact_warn_of_overlap(all->scene, all->pairs + k, report);
         }

@@ -160,6 +160,6 @@ bool contact_keep_spread(contact_points *, struct ab_checkpoint *);
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */
 void contact_points_destroy(contact_points *);
 bool contact_points_prepare(contact_points *, const contact_side side[2]); /* effective masses, history; false: no memory */
-void contact_points_remember(contact_points *);
+bool contact_points_remember(contact_points *); /* false: no memory */
 
 #endif

@@ -137,13 +137,11 @@ static int compare_remembered(const void *a, const void *b) {
     return (x->key > y->key) - (x->key < y->key);
 }
 
-void contact_points_remember(contact_points *points) {
+bool contact_points_remember(contact_points *points) {
     ab_points *v = &points->view;
     remembered *list = malloc((v->count + 1) * sizeof *list);
-    if (!list) {
-        points->old_count = 0;
-        return;
-    }
+    points->old_count = 0;
+    if (!list) return false;
     for (size_t i = 0; i < v->count; ++i) list[i] = (remembered){v->key[i], (uint32_t)i};
     qsort(list, v->count, sizeof *list, compare_remembered);
     if (v->count > points->old_capacity || !points->old_key) {
@@ -154,13 +152,15 @@ void contact_points_remember(contact_points *points) {
         points->sums.old_place = malloc(2 * points->old_capacity * sizeof *points->sums.old_place);
         points->sums.now = malloc(points->old_capacity * sizeof *points->sums.now);
     }
-    points->old_count = points->old_key && points->old_state && points->sums.old_place && points->sums.now ? v->count : 0;
+    const bool room = points->old_key && points->old_state && points->sums.old_place && points->sums.now;
+    if (room) points->old_count = v->count;
     for (size_t k = 0; k < points->old_count; ++k) {
         points->old_key[k] = list[k].key;
         for (size_t c = 0; c < 2; ++c) points->sums.old_place[2 * k + c] = v->position[c * v->ld + list[k].point];
         for (size_t s = 0; s < points->states; ++s) points->old_state[s * points->old_capacity + k] = v->state1[s * v->ld + list[k].point];
     }
     free(list);
+    return room;
 }
 
 /* Where an impulse along the normal changes the velocity across it, the two halves of an answer, each made as if it were alone, overshoot together: by up to
