@@ -128,10 +128,10 @@ static int look_at_energy(ab_guard *guard, const ab_points *p, const double *bef
     for (size_t i = first; i < first + count; i++) {
         const double mn = p->normal_mass[i], mt = p->tangential_mass[i];
         if (p->gap[i] < 0.0 || !(mn > 0.0) || !(mt > 0.0) || (p->stiffness && p->stiffness[i] > 0.0)) continue;
-        double vn = 0.0, on = 0.0, jn = 0.0, work = 0.0, scale = 0.0;
+        double on = 0.0, jn = 0.0, work = 0.0, scale = 0.0;
         for (size_t c = 0; c < d; c++) {
             const double n = p->normal[c * ld + i];
-            vn += p->relative_velocity[c * ld + i] * n, on += before[c * count + i - first] * n, jn += p->impulse[c * ld + i] * n;
+            on += before[c * count + i - first] * n, jn += p->impulse[c * ld + i] * n;
         }
         for (size_t c = 0; c < d; c++) {
             const double n = p->normal[c * ld + i], old = before[c * count + i - first], j = p->impulse[c * ld + i];
