@@ -32,7 +32,7 @@ expect 0 '^abut [0-9]+\.[0-9]+\.[0-9]+$' version
 expect 0 '^abut [0-9]' --version
 expect 2 "unknown command 'rum'; did you mean 'run'" rum x
 expect 2 "unknown command 'xyzzy'; .abut help. lists" xyzzy
-expect 2 "'extremes' is not in this version yet" extremes "$scene"
+expect 2 'has no `extremes`, and no --vary is given' extremes "$scene"
 expect 2 'SCENE missing; usage: abut run SCENE' run
 expect 2 "one word too many: 'b'" run a b
 expect 2 "unknown option '--strcit'; did you mean '--strict'" run "$scene" --strcit
