@@ -102,17 +102,18 @@ static ab_status complain(const fem_body *body, fem_trouble trouble, size_t elem
     if (trouble == FEM_MATERIAL)
         return ab_report_failure(
             report,
-            "material '%s' of body '%s' gave up at t = %.9g s in element %llu near (%.6g, %.6g) m: %s; a smaller dt or a "
-            "finer mesh may help",
-            body->material->name, name, step->time + step->dt, fem_element_number(body, element), place[0], place[1],
-            body->service.message[0] ? body->service.message : "no reason given");
+            "material '%s' of body '%s' gave up at t = %.9g s in element %llu near (%.6g, %.6g) m (step %ld, dt %.4g s, limit %.4g s): %s; "
+            "%s",
+            body->material->name, name, step->time + step->dt, fem_element_number(body, element), place[0], place[1], step->number,
+            step->dt, body->slowest, body->service.message[0] ? body->service.message : "no reason given",
+            step->dt > body->slowest ? "dt is above the limit: use a smaller one, or cfl" : "a smaller dt or a finer mesh may help");
     return ab_report_failure(
-        report,
-        "body '%s': element %llu near (%.6g, %.6g) m is %s at t = %.9g s (step %ld, dt %.4g s, limit %.4g s); use a smaller dt, a finer "
-        "mesh there or a stiffer material",
-        name, fem_element_number(body, element), place[0], place[1],
+        report, "body '%s': element %llu near (%.6g, %.6g) m is %s at t = %.9g s (step %ld, dt %.4g s, limit %.4g s); %s", name,
+        fem_element_number(body, element), place[0], place[1],
         trouble == FEM_INVERTED ? "turned inside out" : "nearly turned inside out (watchdog: {stop: false} lets it go on)",
-        step->time + step->dt, step->number, step->dt, body->slowest);
+        step->time + step->dt, step->number, step->dt, body->slowest,
+        step->dt > body->slowest ? "dt is above the limit of the mesh as it is now: use a smaller dt, or cfl"
+                                 : "use a smaller dt, a finer mesh there or a stiffer material");
 }
 
 static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *report) {

@@ -100,9 +100,10 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
     if (failed) {
         const double *x = mpm_block(body, (size_t)first);
         return ab_report_failure(
-            report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m: %s; a smaller dt or a finer grid may help",
+            report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m (step %ld, dt %.4g s, limit %.4g s): %s; %s",
             body->material->name, body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
-            body->service.message[0] ? body->service.message : "no reason given");
+            step->number, step->dt, body->last_limit, body->service.message[0] ? body->service.message : "no reason given",
+            step->dt > body->last_limit ? "dt is above the limit: use a smaller one, or cfl" : "a smaller dt or a finer grid may help");
     }
     double fastest = 0.0;
     body->last_strain = 0.0;
@@ -195,6 +196,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     body->motion = motion;
     body->energy.kinetic = kinetic;
     body->largest_speed = sqrt(speed2);
+    AB_TRY(mpm_too_far(body, step, false, report)); /* first: a point that was thrown is not one for which the grid is too small */
     if (!isfinite(kinetic)) AB_TRY(look_outside(body, step, report));
     if (!isfinite(kinetic))
         return ab_report_failure(report,
@@ -202,7 +204,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
                                  "up; use a smaller dt; of bases and updates gimp and musl are the safest",
                                  body->domain.spec->name, step->time + step->dt, step->number);
     if (low[0] < 0.0 || low[1] < 0.0 || high[0] > body->span[0] || high[1] > body->span[1]) AB_TRY(look_outside(body, step, report));
-    return mpm_too_far(body, step, far, report);
+    return far ? mpm_too_far(body, step, far, report) : AB_OK;
 }
 
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {

@@ -37,6 +37,8 @@ expect check 0 - $nodes bodies.block.basis=bspline3 time.cfl=0.6
 expect check 0 'warning: bodies.block: nu = 0.4999 .* waves [0-9.]+ times as fast.*f_bar: patch' $nodes constants.nu=0.4999
 expect check 0 - $nodes constants.nu=0.4999 bodies.block.f_bar=patch
 expect run 1 "body 'block': point [0-9]+ moved [0-9.]+ cells in one step, to \(.*velocity .*step 0, dt .*limit .*watchdog" $nodes 'time={end: end, dt: 0.4}' 'bodies.block.body_force=["10*rho", 0]'
+expect run 1 "body 'block': point [0-9]+ moved .* cells in one step, to \(.*something threw it" $nodes 'time={end: 50, dt: 0.4}' 'bodies.block.body_force=["1e9*rho*t", 0]'
+expect run 1 "turned inside out .*dt is above the limit of the mesh as it is now" ../verification/fe_bar 'time={end: 50, dt: 0.08}'
 expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
 [ $missed -eq 0 ] && echo "passed: $(basename "$0")"
 [ $missed -eq 0 ]
