@@ -192,7 +192,7 @@ typedef struct ab_ladder { /* of `trade`: a setting and its values, from cheap t
 typedef struct ab_trade_spec { /* no ladders: the scene has no `trade` */
     ab_ladder *ladders;
     size_t ladder_count;
-    size_t *judges; /* expects that count; none: all */
+    size_t *judges; /* expects, or monitors of a scene without expects, that count; none: all */
     size_t judge_count;
     double tolerance, seconds; /* of the closing sentence */
     double limit;              /* s of wall time for a run; INFINITY: none */

@@ -412,10 +412,11 @@ SECTION(checkpoint, "checkpoint", checkpoint, NULL,
 
 static const ab_key trade[] = {
     [TRADE_VARY] = {"vary", AB_KEY_SECTION, .help = "list of ladders"},
-    [TRADE_ERROR] = {"error", AB_KEY_SECTION,
-                     .help =
-                         "list of names of expects: the error of a run is the largest of theirs; default: all. A scene without expects is "
-                         "measured by its monitors against the finest of its runs"},
+    [TRADE_ERROR] =
+        {"error", AB_KEY_SECTION,
+         .help =
+             "list of names of expects, or of monitors in a scene without expects: the error of a run is the largest of theirs; default: "
+             "all. Monitors are measured against the finest of the runs, or the limit that they tend to"},
     [TRADE_TOLERANCE] = {"tolerance", AB_KEY_NUMBER, .unit = "1", .initial = "0.01", POSITIVE,
                          .help = "the error to be met for the least cost"},
     [TRADE_SECONDS] = {"seconds", AB_KEY_NUMBER, .unit = "s", .initial = "10", POSITIVE,
@@ -423,12 +424,14 @@ static const ab_key trade[] = {
     [TRADE_LIMIT] = {"limit", AB_KEY_NUMBER, .unit = "s", POSITIVE,
                      .help = "a run that takes longer is stopped, and dearer ones of the same ladder are not tried; default: none"},
     [TRADE_SEARCH] = {"search", AB_KEY_WORD, .words = "all|path", .initial = "all",
-                      .help = "all: every combination of the ladders is run; path: from the scene's own settings on, those next to the best "
-                              "so far (docs/trade.md)"},
+                      .help =
+                          "all: every combination of the ladders is run; path: from the scene's own settings on, those next to the best "
+                          "so far (docs/trade.md)"},
     [TRADE_COST] = {"cost", AB_KEY_WORD, .words = "cpu|wall", .initial = "cpu",
                     .help = "cpu: seconds of the processor, of all threads; wall: seconds until it is done, where `threads` are a ladder"},
 };
-SECTION(trade, "trade", trade, NULL, "Accuracy against cost: `abut trade SCENE` runs the scene with several settings. `threads` is a setting, too.",
+SECTION(trade, "trade", trade, NULL,
+        "Accuracy against cost: `abut trade SCENE` runs the scene with several settings. `threads` is a setting, too.",
         "trade:\n  vary:\n    - {set: constants.cells, values: [20, 40, 80]}\n    - {name: basis, set: [bodies.a.basis, bodies.b.basis], "
         "values: [linear, gimp]}\n  tolerance: 1e-2\n  seconds: 10\n");
 

@@ -88,21 +88,24 @@ static void take_ladder(ab_scene_reader *r, const ab_node *node, const char *whe
 
 static void take_judges(ab_scene_reader *r, const ab_node *node, ab_trade_spec *trade) {
     const ab_scene *scene = r->scene;
-    if (!ab_scene_is_list(r, node, "trade.error", "names of expects")) return;
+    const bool monitors = scene->expect_count == 0; /* then errors are those of monitors */
+    const size_t known = monitors ? scene->monitor_count : scene->expect_count;
+    if (!ab_scene_is_list(r, node, "trade.error", "names of expects, or of monitors where there are none")) return;
     trade->judges = ab_reader_take(&r->base, node->count, sizeof *trade->judges);
     for (size_t i = 0; i < node->count && trade->judges != NULL; i++) {
-        const char *name = ab_scene_word(r, node->items[i], "trade.error", "the name of an expect"), *names[AB_DOCUMENT_KEYS];
+        const char *name = ab_scene_word(r, node->items[i], "trade.error", "the name of an expect or monitor"), *names[AB_DOCUMENT_KEYS];
         if (name == NULL) continue;
         size_t found = SIZE_MAX, count = 0;
-        for (size_t e = 0; e < scene->expect_count; e++) {
-            if (scene->expects[e].name == NULL) continue;
-            if (strcmp(scene->expects[e].name, name) == 0) found = e;
-            if (count < AB_DOCUMENT_KEYS) names[count++] = scene->expects[e].name;
+        for (size_t e = 0; e < known; e++) {
+            const char *its = monitors ? scene->monitors[e].name : scene->expects[e].name;
+            if (its == NULL) continue;
+            if (strcmp(its, name) == 0) found = e;
+            if (count < AB_DOCUMENT_KEYS) names[count++] = its;
         }
         char tail[AB_TAIL];
         if (found == SIZE_MAX)
-            ab_report_error(r->base.report, node->items[i]->mark, "trade.error: there is no expect '%.64s'%s", name,
-                            ab_suggest_tail(name, names, count, tail, sizeof tail));
+            ab_report_error(r->base.report, node->items[i]->mark, "trade.error: there is no %s '%.64s'%s", monitors ? "monitor" : "expect",
+                            name, ab_suggest_tail(name, names, count, tail, sizeof tail));
         else
             trade->judges[trade->judge_count++] = found;
     }

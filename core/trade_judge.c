@@ -19,10 +19,11 @@ ab_status ab_trade_choose_judges(ab_trade *trade, const ab_scene *scene, ab_repo
     trade->judges = calloc(count, sizeof *trade->judges);
     if (trade->judges == NULL) return ab_report_failure(report, "no memory to judge the runs");
     trade->judge_count = count;
-    for (size_t k = 0; k < count; k++)
-        trade->judges[k] = (ab_judge){.name = monitors ? scene->monitors[k].name : scene->expects[chosen ? trade->spec->judges[k] : k].name,
-                                      .monitor = monitors,
-                                      .reference = NAN};
+    for (size_t k = 0; k < count; k++) {
+        const size_t which = chosen ? trade->spec->judges[k] : k;
+        trade->judges[k] =
+            (ab_judge){.name = monitors ? scene->monitors[which].name : scene->expects[which].name, .monitor = monitors, .reference = NAN};
+    }
     for (size_t i = 0; i < trade->count; i++) {
         ab_trial *trial = &trade->trials[i];
         trial->errors = calloc(count, sizeof *trial->errors);
