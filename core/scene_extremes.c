@@ -94,6 +94,23 @@ static bool take_range(ab_scene_reader *r, const ab_node *const *v, const char *
     return true;
 }
 
+/* Up to a value that is never tried nothing could be held. */
+static void check_right_to(ab_scene_reader *r, const ab_node *node, const char *where, const ab_extreme *e) {
+    if (node == NULL || !isfinite(e->right_to)) return;
+    bool reached = e->values == NULL && e->right_to >= fmin(e->from, e->to) && e->right_to <= fmax(e->from, e->to);
+    for (size_t k = 0; e->values != NULL && k < e->value_count; k++) {
+        char *end;
+        const double value = strtod(e->values[k], &end);
+        reached = reached || (end != e->values[k] && *end == '\0' && value == e->right_to);
+    }
+    if (reached) return;
+    if (e->values != NULL)
+        ab_report_error(r->base.report, node->mark, "%s.right_to: %.10g is none of the values", where, e->right_to);
+    else
+        ab_report_error(r->base.report, node->mark, "%s.right_to: %.10g is not between from, %.10g, and to, %.10g: it would not be tried",
+                        where, e->right_to, e->from, e->to);
+}
+
 static void take_extreme(ab_scene_reader *r, const ab_node *node, const char *where, ab_extreme *e) {
     const ab_key *key = ab_section_extreme.keys;
     const ab_node *v[EXTREME_KEYS];
@@ -109,6 +126,7 @@ static void take_extreme(ab_scene_reader *r, const ab_node *node, const char *wh
     ab_read_number(&r->base, &key[EXTREME_UNTIL], v[EXTREME_UNTIL], where, &e->until);
     ab_read_number(&r->base, &key[EXTREME_SAME], v[EXTREME_SAME], where, &e->same);
     ab_read_number(&r->base, &key[EXTREME_RIGHT_TO], v[EXTREME_RIGHT_TO], where, &e->right_to);
+    check_right_to(r, v[EXTREME_RIGHT_TO], where, e);
     if (ab_read_text(&r->base, &key[EXTREME_VALUE], v[EXTREME_VALUE], where, &value)) e->value = value;
     if (value != NULL && (strchr(value, '@') == NULL || strlen(value) > AB_EXTREMES_TEXT / 2))
         ab_report_error(r->base.report, v[EXTREME_VALUE]->mark,
