@@ -1,5 +1,6 @@
 /* scene_extremes.c: what `abut extremes` is to drive: quantities with their ends, the map, what counts as not stable. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/extremes.h"
