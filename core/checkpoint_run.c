@@ -41,7 +41,7 @@ static ab_status compare_scenes(ab_checkpoint *c, const char *before, size_t bef
         ab_checkpoint_refuse(
             c,
             "the scene has changed since: '%s' was there, '%s' is now; only title, time.end, monitors, history, output, expect, checkpoint "
-            "and watchdog may change: take that back, or run the scene from its start",
+            "watchdog, checked, trade and extremes may change: take that back, or run the scene from its start",
             la > 0 ? was : "nothing more", lb > 0 ? is : "nothing more");
         break;
     }

@@ -26,15 +26,18 @@ static double shortest_between(double value, double low, double high) {
     return NAN;
 }
 
-/* `value` of the quantity with the number for each @. */
+/* `value` of the quantity with the number for each @; in quotes where it would otherwise be read as a mapping, as "@ > 1 ? 2 : 3" would. */
 static void put_number(const ab_extreme *e, const char *number, char *text, size_t size) {
     const char *from = e->value != NULL ? e->value : "@";
-    size_t used = 0;
+    const bool quote = *from != '{' && *from != '[' && strstr(from, ": ") != NULL && strchr(from, '"') == NULL;
+    const char *mark = quote ? "\"" : "";
+    size_t used = (size_t)snprintf(text, size, "%s", mark);
     for (; *from != '\0' && used + 1 < size; from++) {
         const int written =
             *from == '@' ? snprintf(text + used, size - used, "%s", number) : snprintf(text + used, size - used, "%c", *from);
         used += (size_t)written;
     }
+    if (used < size) snprintf(text + used, size - used, "%s", mark);
 }
 
 size_t ab_extremes_rungs(const ab_extreme *e) { return e->values != NULL ? e->value_count : e->rungs; }

@@ -60,6 +60,7 @@ PYTHON
 must "runs that are there are not run again" bash -c "'$build/abut' extremes bar.yaml -o bar 2>&1 >/dev/null | grep -vc ' before, ' | grep -qx 0"
 must "runs of another scene are" bash -c "sed 's/v0: 1e-4/v0: 2e-4/' bar.yaml >other.yaml; '$build/abut' extremes other.yaml --vary constants.nu=0,0.1 -o bar 2>&1 | grep -q '2 of 2.*done, '"
 must "by the command line" says 0 "^. constants.part . 1, not 1.0" "$build/abut" extremes bar.yaml --vary constants.part=0.5..1.2 -o line -q
+must "a formula with a condition" says 0 "^. k . 2, the end" "$build/abut" extremes bar.yaml --set 'extremes={vary: [{name: k, set: constants.v0, value: "@ > 1 ? 1e-4 : 2e-4", values: [1, 2]}]}' -o condition -q
 must "right up to what is not tried" says 2 "right_to: 1.4 is not between from, 0.5, and to, 1.2" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.4 -o bar -q
 must "what must be right and is not, with --strict" says 3 "dt does not hold: unstable at" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.1 --strict -o bar -q
 must "pieces that do not go one way" says 0 "v0 does not go one way: right 1e-4, wrong 0, right 2e-4" "$build/abut" extremes bar.yaml --vary constants.v0=1e-4,0,2e-4 --set 'expect=[{name: end, monitor: end, reference: 1e-4/w, norm: peak, scale: 1/w, tolerance: 1e-3}]' --set 'expect[0].reference="max(v0, 1e-4)/w"' --set 'expect[0].tolerance=1e-5' -o pieces -q
