@@ -21,7 +21,7 @@ static double now(void) {
 }
 
 static ab_status begin(const ab_child_runs *runs, ab_child *child, ab_report *report) {
-    static char set_word[] = "--set", plugin_path[] = "--plugin-path";
+    static char set_word[] = "--set", plugin_path[] = "--plugin-path", force[] = "--force-plugins";
     const size_t sets = runs->override_count + child->setting_count, most = 16 + 2 * sets;
     char **words = calloc(most, sizeof *words), **made = calloc(most, sizeof *made), threads[16], log[4200];
     size_t count = 0, made_count = 0;
@@ -32,6 +32,7 @@ static ab_status begin(const ab_child_runs *runs, ab_child *child, ab_report *re
         const char *const head[] = {"abut", "run", runs->scene, "--quiet", "-j", threads, "-o", child->folder};
         for (size_t i = 0; i < sizeof head / sizeof *head; i++) words[count++] = (char *)(uintptr_t)head[i];
         if (runs->plugin_path != NULL) words[count++] = plugin_path, words[count++] = (char *)(uintptr_t)runs->plugin_path;
+        if (runs->force_plugins) words[count++] = force;
     }
     for (size_t i = 0; status == AB_OK && i < sets; i++) {
         const ab_override *o = i < runs->override_count ? &runs->overrides[i] : &child->settings[i - runs->override_count];

@@ -37,7 +37,7 @@ typedef struct ab_child_runs { /* what the runs share, and whose they are */
     const ab_override *overrides; /* of the command line, before the settings of a run */
     size_t override_count;
     int jobs, threads;
-    bool quiet;
+    bool quiet, force_plugins;
     bool
         keep_failures; /* a run that broke off is an answer: it is not tried again, unless the machine was the reason (no memory, no room) */
     double limit;      /* s of wall time for a run; INFINITY: none */

@@ -40,22 +40,21 @@ static const ab_command commands[] = {
     {"plan", "SCENE", "what this scene needs, and what it will not pay for: points, memory, passes, plugins, steps, time", NULL,
      AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_JSON, 1, 1, ab_command_plan},
     {"trade", "SCENE", "accuracy against cost: run a scene with several settings, and set its errors beside its cost",
-     "The settings are those of the scene's `trade` (abut help scene), or given by --vary; every combination is run, or with --path those "
-     "that are "
-     "worth it, each in a process of its own. What was run "
-     "before with the\nsame scene is not run again. trade.csv, trade.json and trade.svg land in the results folder.\n"
+     "The settings are those of the scene's `trade` (abut help scene), or given by --vary; every combination is run, or with --path those\n"
+     "that are worth it, each in a process of its own. What was run before with the same scene is not run again. trade.csv, trade.json and "
+     "trade.svg land in the results folder.\n"
      "  abut trade tests/verification/bar_1.yaml --vary constants.cells=25,50,100 --vary bodies.bar.basis=linear,gimp --tolerance 1e-2",
-     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_VARY | AB_OPTION_TOLERANCE |
-         AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE | AB_OPTION_PATH,
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_QUIET |
+         AB_OPTION_VARY | AB_OPTION_TOLERANCE | AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE | AB_OPTION_PATH,
      1, 1, ab_command_trade},
     {"extremes", "SCENE", "how far quantities go: where a run stops being right, where it stops being stable, from where it is refused",
-     "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is driven "
-     "on "
-     "its own: a ladder of runs first,\nthen halves where the verdict changes. What was run before with the same scene is not run again. "
+     "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is "
+     "driven\n"
+     "on its own: a ladder of runs first, then halves where the verdict changes. What was run before with the same scene is not run again. "
      "extremes.csv, extremes.json and, with a map, map.svg land in\nthe results folder. --strict: exit 3 where a quantity does not hold.\n"
      "  abut extremes tests/verification/bar_1.yaml --vary time.cfl=0.1..1.2",
-     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_QUIET | AB_OPTION_STRICT | AB_OPTION_VARY |
-         AB_OPTION_JOBS | AB_OPTION_LIMIT | AB_OPTION_MAP,
+     AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_QUIET |
+         AB_OPTION_STRICT | AB_OPTION_VARY | AB_OPTION_JOBS | AB_OPTION_LIMIT | AB_OPTION_MAP,
      1, 1, ab_command_extremes},
     {"plugins", "[show NAME | new KIND NAME | check NAME]",
      "list the plugins found, tell all about one (settings with unit, range, default), or begin one",
@@ -159,4 +158,40 @@ ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, 
     ab_registry_destroy(*registry);
     *registry = NULL;
     return status;
+}
+
+int ab_command_with_scene(const ab_command_line *line, ab_status (*read)(const ab_command_line *, ab_registry **, ab_scene **, ab_report *),
+                          ab_status (*act)(const ab_command_line *, const ab_scene *, ab_registry *, ab_report *)) {
+    ab_report *report = ab_report_create();
+    if (report == NULL) {
+        fprintf(stderr, "abut: error: no memory\n");
+        return AB_FAILED;
+    }
+    ab_registry *registry = NULL;
+    ab_scene *scene = NULL;
+    ab_status status = read(line, &registry, &scene, report);
+    if (status == AB_OK) {
+        ab_report_print(report, stderr);
+        status = act(line, scene, registry, report);
+        ab_report_print(report, stderr);
+        ab_scene_destroy(scene);
+        ab_registry_destroy(registry);
+    }
+    ab_report_destroy(report);
+    return (int)status;
+}
+
+ab_child_runs ab_command_child_runs(const ab_command_line *line, const char *ending, char *folder, size_t size) {
+    ab_command_folder(line->words[0], folder, size);
+    const size_t length = strlen(folder);
+    snprintf(folder + length, size - length, "-%s", ending);
+    return (ab_child_runs){.scene = line->words[0],
+                           .folder = line->output != NULL ? line->output : folder,
+                           .plugin_path = line->plugin_path,
+                           .force_plugins = line->force_plugins,
+                           .overrides = line->overrides,
+                           .override_count = line->override_count,
+                           .jobs = line->jobs > 0 ? line->jobs : 1,
+                           .threads = line->threads > 0 ? line->threads : 1,
+                           .quiet = line->quiet};
 }

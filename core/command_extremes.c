@@ -98,19 +98,9 @@ static ab_status drive(const ab_command_line *line, const ab_scene *scene, ab_re
         return ab_report_error(report, AB_NOWHERE,
                                "%s has no `extremes`, and no --vary is given: nothing to drive; for example --vary time.cfl=0.1..1.2",
                                line->words[0]);
-    char folder[PATH_MAX + 32], base[PATH_MAX + 16];
-    ab_command_folder(line->words[0], base, sizeof base);
-    snprintf(folder, sizeof folder, "%s-extremes", base);
-    ab_extremes extremes = {.runs = {.scene = line->words[0],
-                                     .folder = line->output != NULL ? line->output : folder,
-                                     .plugin_path = line->plugin_path,
-                                     .overrides = line->overrides,
-                                     .override_count = line->override_count,
-                                     .jobs = line->jobs > 0 ? line->jobs : 1,
-                                     .threads = line->threads > 0 ? line->threads : 1,
-                                     .quiet = line->quiet},
-                            .scene = scene,
-                            .spec = &scene->extremes};
+    char folder[PATH_MAX + 32];
+    ab_extremes extremes = {
+        .runs = ab_command_child_runs(line, "extremes", folder, sizeof folder), .scene = scene, .spec = &scene->extremes};
     ab_status status = ab_extremes_plan(&extremes, report);
     if (status == AB_OK) status = check_values(line, &extremes, registry, report);
     if (status == AB_OK) status = ab_extremes_run(&extremes, scene, registry, report);
@@ -132,22 +122,4 @@ static ab_status drive(const ab_command_line *line, const ab_scene *scene, ab_re
     return status;
 }
 
-int ab_command_extremes(const ab_command_line *line) {
-    ab_report *report = ab_report_create();
-    if (report == NULL) {
-        fprintf(stderr, "abut: error: no memory\n");
-        return AB_FAILED;
-    }
-    ab_registry *registry = NULL;
-    ab_scene *scene = NULL;
-    ab_status status = read_scene(line, &registry, &scene, report);
-    if (status == AB_OK) {
-        ab_report_print(report, stderr);
-        status = drive(line, scene, registry, report);
-        ab_report_print(report, stderr);
-        ab_scene_destroy(scene);
-        ab_registry_destroy(registry);
-    }
-    ab_report_destroy(report);
-    return (int)status;
-}
+int ab_command_extremes(const ab_command_line *line) { return ab_command_with_scene(line, read_scene, drive); }

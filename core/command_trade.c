@@ -114,18 +114,8 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
                                line->words[0]);
     AB_TRY(check_values(line, scene, registry, report));
     AB_TRY(check_place(line, report));
-    char folder[PATH_MAX + 32], base[PATH_MAX + 16];
-    ab_command_folder(line->words[0], base, sizeof base);
-    snprintf(folder, sizeof folder, "%s-trade", base);
-    ab_trade trade = {.runs = {.scene = line->words[0],
-                               .folder = line->output != NULL ? line->output : folder,
-                               .plugin_path = line->plugin_path,
-                               .overrides = line->overrides,
-                               .override_count = line->override_count,
-                               .jobs = line->jobs > 0 ? line->jobs : 1,
-                               .threads = line->threads > 0 ? line->threads : 1,
-                               .quiet = line->quiet},
-                      .spec = &scene->trade};
+    char folder[PATH_MAX + 32];
+    ab_trade trade = {.runs = ab_command_child_runs(line, "trade", folder, sizeof folder), .spec = &scene->trade};
     ab_status status = ab_trade_plan(&trade, report);
     if (status == AB_OK) status = ab_trade_run(&trade, scene, registry, report);
     const bool stopped = status > 128;
@@ -149,22 +139,4 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
     return status;
 }
 
-int ab_command_trade(const ab_command_line *line) {
-    ab_report *report = ab_report_create();
-    if (report == NULL) {
-        fprintf(stderr, "abut: error: no memory\n");
-        return AB_FAILED;
-    }
-    ab_registry *registry = NULL;
-    ab_scene *scene = NULL;
-    ab_status status = read_scene(line, &registry, &scene, report);
-    if (status == AB_OK) {
-        ab_report_print(report, stderr);
-        status = trade_scene(line, scene, registry, report);
-        ab_report_print(report, stderr);
-        ab_scene_destroy(scene);
-        ab_registry_destroy(registry);
-    }
-    ab_report_destroy(report);
-    return (int)status;
-}
+int ab_command_trade(const ab_command_line *line) { return ab_command_with_scene(line, read_scene, trade_scene); }

@@ -2,6 +2,7 @@
 #ifndef AB_COMMANDS_H
 #define AB_COMMANDS_H
 
+#include "core/child_runs.h"
 #include "core/scheduler.h"
 
 enum ab_option_bits { /* options a command takes */
@@ -70,6 +71,10 @@ void ab_command_help(const ab_command *commands, const ab_command *command, FILE
 
 /* Reads the scene that the line names, with its plugins. On failure the report is printed and both are NULL. */
 ab_status ab_command_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report);
+/* Reads the scene by `read` (ab_command_scene, or a command's own), prints its warnings, before a long run rather than after it, and lets `act` use it. Returns the exit
+ * status; all is printed and released. */
+int ab_command_with_scene(const ab_command_line *line, ab_status (*read)(const ab_command_line *, ab_registry **, ab_scene **, ab_report *),
+                          ab_status (*act)(const ab_command_line *, const ab_scene *, ab_registry *, ab_report *));
 /* The same with more overrides behind those of the line. */
 ab_status ab_command_scene_with(const ab_command_line *line, const ab_override *more, size_t count, ab_registry **registry,
                                 ab_scene **scene, ab_report *report);
@@ -79,6 +84,9 @@ int ab_command_check(const ab_command_line *line);
 int ab_command_plan(const ab_command_line *line);
 int ab_command_trade(const ab_command_line *line);    /* command_trade.c */
 int ab_command_extremes(const ab_command_line *line); /* command_extremes.c */
+
+/* Runs of the line's scene as child processes, in -o or (that text goes into `folder`) in results/NAME-ENDING. */
+ab_child_runs ab_command_child_runs(const ab_command_line *line, const char *ending, char *folder, size_t size);
 
 /* results/NAME: NAME is the scene's folder where the file is called scene.yaml, else the file without its ending. */
 void ab_command_folder(const char *scene, char *folder, size_t size);

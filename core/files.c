@@ -159,3 +159,12 @@ void ab_text_clear(ab_text *text) {
     free(text->bytes);
     *text = (ab_text){0};
 }
+
+ab_status ab_text_write(ab_text *text, const char *folder, const char *name, ab_report *report) {
+    char *path = ab_path_join(folder, name);
+    const ab_status status = text->failed || path == NULL ? ab_report_failure(report, "no memory for %s", name)
+                                                          : ab_file_replace(path, text->bytes, text->count, report);
+    free(path);
+    ab_text_clear(text);
+    return status;
+}

@@ -23,5 +23,7 @@ void ab_text_add_xml(ab_text *text, const char *string);     /* & < > " escaped 
 void ab_text_add_csv(ab_text *text, const char *field);      /* in quotes where it holds commas, quotes or ends of lines */
 void ab_text_add_number(ab_text *text, double value);        /* shortest JSON number that reads back the same; null for NaN and infinity */
 void ab_text_clear(ab_text *text);                           /* frees */
+/* The text as the file folder/name, by ab_file_replace; the text is freed. */
+ab_status ab_text_write(ab_text *text, const char *folder, const char *name, ab_report *report);
 
 #endif

@@ -199,10 +199,5 @@ ab_status ab_summary_write(const ab_results *results, const ab_state_view *view,
     key(&text, "columns", false);
     columns(&text, results);
     ab_text_add(&text, "\n}\n");
-    char *path = ab_path_join(results->folder, "summary.json");
-    const ab_status status = path == NULL || text.failed ? ab_report_failure(report, "no memory for summary.json")
-                                                         : ab_file_replace(path, text.bytes, text.count, report);
-    free(path);
-    ab_text_clear(&text);
-    return status;
+    return ab_text_write(&text, results->folder, "summary.json", report);
 }

@@ -208,12 +208,7 @@ ab_status ab_trade_write(const ab_trade *trade, ab_report *report) {
     for (int i = 0; i < 3; i++) {
         ab_text text = {0};
         writers[i](trade, &text);
-        char *path = ab_path_join(trade->runs.folder, names[i]);
-        const ab_status status = text.failed || path == NULL ? ab_report_failure(report, "no memory for %s", names[i])
-                                                             : ab_file_replace(path, text.bytes, text.count, report);
-        free(path);
-        ab_text_clear(&text);
-        AB_TRY(status);
+        AB_TRY(ab_text_write(&text, trade->runs.folder, names[i], report));
     }
     return AB_OK;
 }
