@@ -38,11 +38,11 @@ static ab_status compare_scenes(ab_checkpoint *c, const char *before, size_t bef
         char was[256], is[256];
         quote(before + a, la, was, sizeof was);
         quote(now->bytes + b, lb, is, sizeof is);
-        ab_checkpoint_refuse(
-            c,
-            "the scene has changed since: '%s' was there, '%s' is now; only title, time.end, monitors, history, output, expect, checkpoint "
-            "watchdog, checked, trade and extremes may change: take that back, or run the scene from its start",
-            la > 0 ? was : "nothing more", lb > 0 ? is : "nothing more");
+        ab_checkpoint_refuse(c,
+                             "the scene has changed since: '%s' was there, '%s' is now; only title, time.end, monitors, history, output, "
+                             "expect, checkpoint, "
+                             "watchdog, checked, trade and extremes may change: take that back, or run the scene from its start",
+                             la > 0 ? was : "nothing more", lb > 0 ? is : "nothing more");
         break;
     }
     return ab_checkpoint_status(c);
