@@ -359,7 +359,7 @@ static ab_status build(const from_file *f, const entry *node, const entry *eleme
     return warn_of_twins(f, mesh);
 }
 
-static ab_status take_file(const from_file *f, fem_mesh **mesh) {
+static ab_status make(const from_file *f, fem_mesh **mesh) {
     size_t elements = 0, used = 0;
     AB_TRY(check_types(f, &elements));
     const size_t nodes = f->file->node_count;
@@ -380,22 +380,26 @@ static ab_status take_file(const from_file *f, fem_mesh **mesh) {
     return status;
 }
 
+ab_status fem_gmsh_mesh(const ab_body_spec *spec, const char *path, const fem_gmsh_file *file, fem_mesh **result, ab_report *report) {
+    const from_file f = {spec, path, file, report};
+    fem_mesh *mesh = NULL;
+    const ab_status status = make(&f, &mesh);
+    if (status == AB_OK)
+        *result = mesh;
+    else
+        fem_mesh_destroy(mesh);
+    return status;
+}
+
 ab_status fem_mesh_gmsh(const ab_body_spec *spec, const char *folder, fem_mesh **result, ab_report *report) {
     fem_gmsh_file file;
     char *path = spec->mesh.file[0] == '/' ? ab_path_join("", spec->mesh.file + 1) : ab_path_join(folder, spec->mesh.file);
     if (path == NULL) return ab_report_failure(report, "no memory for the mesh of body '%s'", spec->name);
-    fem_mesh *mesh = NULL;
     ab_status status = fem_gmsh_read(path, spec->name, spec->mesh.mark, &file, report);
     if (status == AB_OK) {
-        const from_file f = {spec, path, &file, report};
-        status = take_file(&f, &mesh);
+        status = fem_gmsh_mesh(spec, path, &file, result, report);
         fem_gmsh_forget(&file);
     }
     free(path);
-    if (status != AB_OK) {
-        fem_mesh_destroy(mesh);
-        return status;
-    }
-    *result = mesh;
-    return AB_OK;
+    return status;
 }

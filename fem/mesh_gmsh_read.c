@@ -1,7 +1,6 @@
 /* mesh_gmsh_read.c: asks libgmsh for the contents of a .msh file. The library is large and reads whatever it is given, so it is loaded only here, and only in a
- * process of its own with bounds on memory and time: a damaged file costs that process, not the run. What comes back is one stream of 8-byte numbers:
- *   failed (0 or 1), bytes of text, text (to a multiple of 8); then, unless failed,
- *   nodes, their ids, 3 coordinates each; blocks, and of each: type, dimension, nodes an element, elements, their ids, the ids of their nodes. */
+ * process of its own with bounds on memory and time: a damaged file costs that process, not the run. What comes back is
+ * one stream of numbers: mesh_gmsh_stream.c. */
 #define _GNU_SOURCE
 #include "fem/mesh_gmsh.h"
 
@@ -24,7 +23,7 @@
 #define VERSION_TEXT(major, minor) "libgmsh.so." TEXT_OF(major) "." TEXT_OF(minor)
 static const char library_name[] = VERSION_TEXT(GMSH_API_VERSION_MAJOR, GMSH_API_VERSION_MINOR); /* its soname: the header's own version */
 
-enum { MOST_SECONDS = 30, TEXT = 400 };
+enum { MOST_SECONDS = 30, TEXT = FEM_GMSH_TEXT };
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -313,60 +312,6 @@ static char *slurp(int pipe, size_t *count) {
     return bytes;
 }
 
-typedef struct cursor {
-    const char *at;
-    size_t left;
-} cursor;
-
-/* The next `count` numbers of 8 bytes; NULL when there are fewer. */
-static const void *take(cursor *c, uint64_t count) {
-    if (count > c->left / 8) return NULL;
-    const void *here = c->at;
-    c->at += 8 * count;
-    c->left -= 8 * count;
-    return here;
-}
-
-static bool take_number(cursor *c, uint64_t *number) {
-    const uint64_t *here = take(c, 1);
-    if (here != NULL) *number = *here;
-    return here != NULL;
-}
-
-static bool take_blocks(cursor *c, fem_gmsh_file *file) {
-    uint64_t blocks = 0;
-    if (!take_number(c, &blocks) || blocks > FEM_GMSH_BLOCKS) return false;
-    file->block_count = blocks;
-    for (uint64_t k = 0; k < blocks; k++) {
-        fem_gmsh_block *block = &file->block[k];
-        if (!take_number(c, &block->type) || !take_number(c, &block->dimension) || !take_number(c, &block->nodes) ||
-            !take_number(c, &block->count) || block->nodes > 1000)
-            return false;
-        block->id = take(c, block->count);
-        if (block->id == NULL) return false;
-        block->node = take(c, block->count * block->nodes);
-        if (block->node == NULL) return false;
-    }
-    return true;
-}
-
-/* 1: read; 0: refused, with `text`; -1: the stream ends too early. */
-static int take_file(const char *bytes, size_t count, fem_gmsh_file *file, char text[TEXT]) {
-    cursor c = {bytes, count};
-    uint64_t failed = 0, length = 0, nodes = 0;
-    if (!take_number(&c, &failed) || !take_number(&c, &length) || length >= TEXT) return -1;
-    const char *said = take(&c, (length + 7) / 8);
-    if (said == NULL) return -1;
-    memcpy(text, said, length);
-    text[length] = '\0';
-    if (failed) return 0;
-    if (!take_number(&c, &nodes)) return -1;
-    file->node_count = nodes;
-    file->node_id = take(&c, nodes);
-    file->x = file->node_id == NULL || nodes > c.left ? NULL : take(&c, 3 * nodes);
-    return file->x != NULL && take_blocks(&c, file) ? 1 : -1;
-}
-
 /* Only text or binary .msh: libgmsh would run anything else as a script. */
 static ab_status open_mesh(const char *path, const char *body, ab_mark mark, int *handle, off_t *size, ab_report *report) {
     *handle = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -420,7 +365,7 @@ ab_status fem_gmsh_read(const char *path, const char *body, ab_mark mark, fem_gm
     close(ends[0]);
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     if (file->bytes == NULL) return ab_report_failure(report, "body '%s': no memory for the mesh in '%s'", body, path);
-    const int taken = take_file(file->bytes, count, file, text);
+    const int taken = fem_gmsh_take(file->bytes, count, file, text);
     if (taken == 1) return AB_OK;
     fem_gmsh_forget(file);
     if (taken == 0) return ab_report_error(report, mark, "body '%s': libgmsh cannot read '%s': %s", body, path, text);
@@ -441,8 +386,3 @@ ab_status fem_gmsh_read(const char *path, const char *body, ab_mark mark, fem_gm
 }
 
 #endif
-
-void fem_gmsh_forget(fem_gmsh_file *file) {
-    free(file->bytes);
-    *file = (fem_gmsh_file){0};
-}

@@ -59,8 +59,25 @@ contact:
   - {bodies: [beam, ground], algorithm: multi-velocity, response: coulomb, friction: 0.3}
   - {bodies: [disc, beam], algorithm: point-to-segment, response: coulomb, friction: 0.3}
 SCENE
+# So deep in each other that a point finds its face only by what the steps before know: by how much bodies overlapped, and how long faces were at the start.
+cat >"$scratch/deep.yaml" <<'SCENE'
+abut: 1
+gravity: [0, -10]
+time: {end: 0.12, cfl: 0.5}
+materials:
+  soft: {model: linear-elastic, E: 1e5, nu: 0.3, density: 1000}
+bodies:
+  block: {method: finite-elements, material: soft, mesh: {box: [[0, 0], [1, 0.4]], elements: [10, 4], type: q4}}
+  plate: {method: finite-elements, material: soft, mesh: {box: [[0.15, 0.401], [0.85, 0.7]], elements: [7, 3], type: q4}, velocity: [0, -3]}
+contact:
+  - {bodies: [block, plate], algorithm: point-to-segment, response: penalty, stiffness: 0.01, friction: 0.3}
+monitors:
+  - {name: depth, contact: 0, value: penetration}
+  - {name: push, contact: 0, value: force.y}
+SCENE
 
 kind points 40 0.1
+kind deep 11 0.12
 kind rolling 50 0.05
 kind bar_transfers 40 1
 kind vortex 30 0.2
