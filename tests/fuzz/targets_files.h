@@ -2,6 +2,10 @@
 #ifndef FUZZ_TARGETS_FILES_H
 #define FUZZ_TARGETS_FILES_H
 
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE
+#endif
+
 #include <zlib.h>
 
 #include "contact/contact.h"
