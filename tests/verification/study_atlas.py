@@ -31,8 +31,9 @@ SCENES = {  # scene, arguments of trade, quantities of extremes
              ["--vary", "contact[0].algorithm=multi-velocity,point-to-segment", "--vary", "bodies.beam.mesh.type=q6,q8r,q8", "--vary", "bodies.block.basis=linear,gimp"],
              "[{name: dt, set: time.dt, from: 2e-4, to: 4e-3, scale: log, rungs: 5, until: 0.2, right_to: 1e-3}]"),
     "punch": ("tests/verification/punch.yaml",
-              ["--vary", "constants.cells=2,4,8", "--vary", "bodies.ground.f_bar=false,cell,patch", "--vary", "contact[0].algorithm=multi-velocity,point-to-segment"],
-              '[{name: nu, set: constants.nu, values: [0, 0.2, 0.3, 0.4, 0.45]}, {name: speed of the push, set: constants.v, value: "@*(2 + pi)*cu/(rho*c)", from: 0.01, to: 0.5}]'),
+              ["--vary", "constants.cells=2,4,8,16", "--vary", "bodies.ground.f_bar=false,cell,patch", "--vary", "contact[0].algorithm=multi-velocity,point-to-segment"],
+              "[{name: nu, set: constants.nu, values: [0, 0.2, 0.3, 0.4, 0.49]}, {name: speed of the push, set: constants.push, from: 0.02, to: 1}, "
+              "{name: way of the punch over B, set: constants.sink, from: 1e-4, to: 0.1}]"),
 }
 
 
