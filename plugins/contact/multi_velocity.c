@@ -300,10 +300,19 @@ static double node_gap(const multi_velocity *mv, const ab_trace *a, const ab_tra
     return distance(a, b, i, unit(along, a->dimension) > 0.0 ? along : n);
 }
 
-/* Of a cell's face. A body that only just reaches a node has no say in its normal, and none in contact at corners. But where a face has passed a line of the grid by eps of a
- * cell, both bodies have eps of it at the nodes beyond, across that line, opposite to each other, and one of them next to no mass there (eps squared). Left out, such a node is a
- * free one, flies off with the stress of the points behind the face, and strains them by it: bodies at rest creep into each other. */
-static const double LEAST_AREA = 1e-3, LEAST_FACING_AREA = 1e-8, ALIGNED = 0.99;
+/* Of a cell's face, of a cell's face, a cosine, of the other's mass. */
+static const double LEAST_AREA = 1e-3, LEAST_PAST = 1e-8, ALIGNED = 0.99, LIGHT = 1e-4;
+
+/* A body that only just reaches a node has no say in its normal, and none in contact at corners. But a face along a line of the grid that has passed it by eps of a cell leaves
+ * eps of its area at the nodes beyond, and eps squared of mass. Left out, such a node is a free one, flies off with the stress of the points behind the face, and
+ * strains them by it: bodies at rest creep into each other.
+ * True where the face of the light body t has passed the node: n out of it, l its area over that of a cell's face. */
+static int just_past(const ab_trace *t, const ab_trace *other, size_t i, const double n[3], double l) {
+    if (!(l > LEAST_PAST && l <= LEAST_AREA && t->mass[i] < LIGHT * other->mass[i])) return 0;
+    for (uint32_t c = 0; c < t->dimension; ++c)
+        if (fabs(n[c]) > ALIGNED) return 1;
+    return 0;
+}
 
 /* The normal at shared node i, out of a; false where there is no contact to speak of. *area: tributary, m2. */
 static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, double n[3], double *area) {
@@ -316,9 +325,8 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     const double la = unit(na, d), lb = unit(nb, d);
     double face = 1.0;
     for (uint32_t c = 1; c < d; ++c) face *= a->cell;
-    double facing = 0.0; /* along a line of the grid */
-    for (uint32_t c = 0; c < d; ++c) facing = larger(facing, -na[c] * nb[c]);
-    const double least = (facing >= ALIGNED ? LEAST_FACING_AREA : LEAST_AREA) * face;
+    const int past = just_past(a, b, i, na, la / face) || just_past(b, a, i, nb, lb / face);
+    const double least = (past ? LEAST_PAST : LEAST_AREA) * face;
     if (!(smaller(la, lb) > least)) return 0; /* one of them has no face here, whatever the normal is */
     n[0] = n[1] = n[2] = 0.0;
     if (mv->normal == NORMAL_AVERAGE || !named_normal(mv, a, b, i, na, nb, n)) {
