@@ -13,7 +13,9 @@ export ABUT_BUILD=${1:?the build folder} ABUT_SOURCE=$source
 ABUT_BUILD=$(realpath "$ABUT_BUILD")
 cd "$scratch" || exit 1
 mkdir -p seeds/scene seeds/set seeds/plugin seeds/checkpoint seeds/mesh
-cp "$source"/tests/fuzz/corpus/*.yaml "$source"/tests/verification/*.yaml "$source"/plugins/new/*.yaml seeds/scene
+for folder in tests/fuzz/corpus tests/verification plugins/new; do # some have the same names
+    for file in "$source/$folder"/*.yaml; do cp "$file" "seeds/scene/${folder//\//_}_${file##*/}"; done
+done
 cp "$source"/tests/fuzz/corpus/*.set seeds/set
 cp "$ABUT_BUILD"/plugins/contact/frictionless.so "$ABUT_BUILD"/tests/plugins/wrong_nothing.so seeds/plugin
 cp "$source"/tests/fuzz/corpus/*.mesh seeds/mesh
