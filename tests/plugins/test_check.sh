@@ -91,7 +91,7 @@ ended() {
 ended material WRITES_OLD "material 'own'.*plugin 'my-law'.*\"what is handed in is not written\": it wrote into stress0"
 ended material WRITES_BEHIND "plugin 'my-law'.*\"arrays are not overrun\": it went 0 bytes behind the end of stress1"
 ended material WRITES_BEFORE "plugin 'my-law'.*\"arrays are not overrun\": it wrote before the start of stress1"
-ended material MAKES_ENERGY "material 'own' of body 'block' gave up at t = .* near .* m: plugin 'my-law'.*\"dissipation not negative\": it lost -.* item .* at t = "
+ended material MAKES_ENERGY "material 'own' of body 'block' gave up at t = .* near .* m (.*): plugin 'my-law'.*\"dissipation not negative\": it lost -.* item .* at t = "
 ended response WRITES_NORMAL "contact of 'block' and 'table': .*plugin 'my-law'.*it wrote into normal.*at t = |contact of 'block' and 'table': .*plugin 'my-law'.*it wrote into normal.*t = "
 ended response WRITES_BEHIND "contact of 'block' and 'table': .*plugin 'my-law'.*behind the end of stiffness.*t = "
 ended response THROWS "contact of 'block' and 'table'.*plugin 'my-law'.*\"dissipation not negative\".*t = "
