@@ -24,6 +24,8 @@ import sys
 
 columns = int(sys.argv[1])
 drawn = open("drawn.txt", encoding="utf-8", newline="").read()
+drawn, told, end = drawn.partition("stopped at t = ") # on a line of its own, where the bar was
+assert re.fullmatch(r"[0-9.e+-]+ s; go on with --restart out/checkpoint.abut\r\n", end), repr(end)
 assert drawn.endswith("\r\x1b[K"), repr(drawn[-80:])
 lines = [re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line) for line in re.split(r"[\r\n]+", drawn)]
 lines = [line for line in lines if line]
