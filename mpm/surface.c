@@ -119,7 +119,8 @@ static void add_point(mpm_body *body, const mpm_tile *tile, const double *block,
     const size_t to = s->count++, ld = s->capacity;
     const int nodes = body->kernel->nodes;
     for (size_t c = 0; c < 2; ++c) s->position[c * ld + to] = block[8 * (ROW_X + c) + (size_t)l];
-    for (size_t c = 0; c < 3; ++c) s->extent[c * ld + to] = block[8 * ((size_t)body->rows.extent + c) + (size_t)l];
+    for (size_t c = 0; c < 3; ++c) /* kept where a finder of the scene needs them */
+        s->extent[c * ld + to] = body->rows.extent >= 0 ? block[8 * ((size_t)body->rows.extent + c) + (size_t)l] : 0.0;
     s->area[to] = sqrt(block[8 * ROW_VOLUME + l]);
     if (body->axisymmetric)
         s->area[to] /= sqrt(ab_circumference(block[8 * ROW_X + l] + body->origin[0])); /* in the plane, as all finders see it */
