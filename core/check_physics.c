@@ -29,6 +29,13 @@ static void rotation(ab_check *check, uint32_t dimension, double Q[3][3]) {
 static const int PAIR[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
 static const int PLANE_FULL[5][2] = {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 2}};
 
+/* Row (axis 0) or column (axis 1) of component k of a tensor as it is stored. */
+static int place_of(uint32_t shape, uint32_t dimension, int k, int axis) {
+    if (shape == AB_SYMMETRIC) return PAIR[k][axis];
+    if (dimension == 2) return PLANE_FULL[k][axis];
+    return axis == 0 ? k / 3 : k % 3;
+}
+
 /* One tensor or vector of an item; both: Q A Q^T, else Q A. `shear` of the off-diagonal ones of a symmetric tensor as they are stored: 2 for strain. */
 static void turn(double Q[3][3], uint32_t shape, uint32_t dimension, bool both, double shear, const double *from, double *to, size_t ld) {
     double A[3][3] = {{0}}, B[3][3], C[3][3];
@@ -47,12 +54,7 @@ static void turn(double Q[3][3], uint32_t shape, uint32_t dimension, bool both, 
     }
     const int rows = shape == AB_SYMMETRIC ? symmetric : full;
     for (int k = 0; k < rows; k++) {
-        const int r = shape == AB_SYMMETRIC ? PAIR[k][0]
-                      : dimension == 2      ? PLANE_FULL[k][0]
-                                            : k / 3,
-                  c = shape == AB_SYMMETRIC ? PAIR[k][1]
-                      : dimension == 2      ? PLANE_FULL[k][1]
-                                            : k % 3;
+        const int r = place_of(shape, dimension, k, 0), c = place_of(shape, dimension, k, 1);
         const double value = from[(size_t)k * ld] / (shape == AB_SYMMETRIC && r != c ? shear : 1.0);
         A[r][c] = value;
         if (shape == AB_SYMMETRIC) A[c][r] = value;
@@ -68,12 +70,7 @@ static void turn(double Q[3][3], uint32_t shape, uint32_t dimension, bool both, 
             for (int k = 0; k < 3; k++) C[r][c] += B[r][k] * Q[c][k];
         }
     for (int k = 0; k < rows; k++) {
-        const int r = shape == AB_SYMMETRIC ? PAIR[k][0]
-                      : dimension == 2      ? PLANE_FULL[k][0]
-                                            : k / 3,
-                  c = shape == AB_SYMMETRIC ? PAIR[k][1]
-                      : dimension == 2      ? PLANE_FULL[k][1]
-                                            : k % 3;
+        const int r = place_of(shape, dimension, k, 0), c = place_of(shape, dimension, k, 1);
         to[(size_t)k * ld] = (both ? C[r][c] : B[r][c]) * (shape == AB_SYMMETRIC && r != c ? shear : 1.0);
     }
 }

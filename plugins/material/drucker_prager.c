@@ -118,28 +118,16 @@ static const ab_param params[] = {
      "where the cone meets Mohr and Coulomb: at triaxial compression (outside), triaxial extension (inside), or by its limit loads in "
      "plane strain",
      "outside|inside|plane-strain", AB_CHOICE, 0, PLANE_STRAIN, 0, 0},
-    {"residual_cohesion", "Pa", "cohesion after softening; without it the cohesion stays", NULL, AB_REAL, 0, INFINITY, 0, INFINITY},
-    {"residual_friction", "rad", "friction after softening; without it the friction stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
-     SOIL_RIGHT_ANGLE},
-    {"residual_dilation", "rad", "dilation after softening; without it the dilation stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
-     SOIL_RIGHT_ANGLE},
+    SOIL_RESIDUAL_SETTINGS,
     SOIL_SOFTENING_SETTINGS,
 };
 static const ab_state states[] = {SOIL_STATE};
 static const ab_material_ops ops = {sizeof ops, NULL, update};
 static const ab_class drucker_prager = {
-    .struct_size = sizeof(ab_class),
-    .kind = AB_MATERIAL,
-    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
-    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED,
-    .nparam = sizeof params / sizeof *params,
-    .nstate = 1,
+    SOIL_CLASS_HEAD,
     .name = "drucker-prager",
     .help = "friction and cohesion on a round cone matched to Mohr-Coulomb, softening to residuals",
     .reference = "de Souza Neto, Peric and Owen 2008, box 8.8",
-    .param = params,
-    .state = states,
-    .create = create,
     .destroy = destroy,
     .ops = &ops,
 };

@@ -27,28 +27,16 @@ static const ab_param params[] = {
      SOIL_RIGHT_ANGLE},
     {"tension", "Pa", "largest tensile stress; without it the surface goes on to its apex, cohesion/tan(friction)", NULL, AB_REAL, 0,
      INFINITY, 0, INFINITY},
-    {"residual_cohesion", "Pa", "cohesion after softening; without it the cohesion stays", NULL, AB_REAL, 0, INFINITY, 0, INFINITY},
-    {"residual_friction", "rad", "friction after softening; without it the friction stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
-     SOIL_RIGHT_ANGLE},
-    {"residual_dilation", "rad", "dilation after softening; without it the dilation stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,
-     SOIL_RIGHT_ANGLE},
+    SOIL_RESIDUAL_SETTINGS,
     SOIL_SOFTENING_SETTINGS,
 };
 static const ab_state states[] = {SOIL_STATE};
 static const ab_material_ops ops = {sizeof ops, NULL, mc_update};
 static const ab_class mohr_coulomb = {
-    .struct_size = sizeof(ab_class),
-    .kind = AB_MATERIAL,
-    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
-    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED,
-    .nparam = sizeof params / sizeof *params,
-    .nstate = 1,
+    SOIL_CLASS_HEAD,
     .name = "mohr-coulomb",
     .help = "cohesion and friction on planes of slip, dilation, tension cut-off, softening to residuals",
     .reference = "Clausen, Damkilde and Andersen 2006; de Souza Neto, Peric and Owen 2008, section 8.2",
-    .param = params,
-    .state = states,
-    .create = create,
     .destroy = mc_destroy,
     .ops = &ops,
 };

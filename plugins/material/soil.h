@@ -92,6 +92,22 @@ typedef struct soil_softening {
     double end, per_end;
 } soil_softening;
 
+/* Residual strengths of laws with cohesion and friction. */
+#define SOIL_RESIDUAL_SETTINGS                                                                                                             \
+    {"residual_cohesion", "Pa", "cohesion after softening; without it the cohesion stays", NULL, AB_REAL, 0, INFINITY, 0, INFINITY},       \
+        {"residual_friction", "rad", "friction after softening; without it the friction stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,     \
+         SOIL_RIGHT_ANGLE},                                                                                                                \
+    {                                                                                                                                      \
+        "residual_dilation", "rad", "dilation after softening; without it the dilation stays", NULL, AB_REAL, 0, SOIL_RIGHT_ANGLE, 0,      \
+            SOIL_RIGHT_ANGLE                                                                                                               \
+    }
+
+/* What the classes of all soils with a fixed strength have in common; `params`, `states` and `create` are the file's own. */
+#define SOIL_CLASS_HEAD                                                                                                                    \
+    .struct_size = sizeof(ab_class), .kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,                       \
+    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED, .nparam = sizeof params / sizeof *params, .nstate = 1,             \
+    .param = params, .state = states, .create = create
+
 #define SOIL_SOFTENING_SETTINGS                                                                                                            \
     {"softening_strain", "1", "equivalent plastic strain at which the residuals are reached", NULL, AB_REAL, 0, INFINITY, 0, INFINITY},    \
         {"softening_slip",                                                                                                                 \

@@ -27,18 +27,10 @@ static const ab_param params[] = {
 static const ab_state states[] = {SOIL_STATE};
 static const ab_material_ops ops = {sizeof ops, NULL, mc_update};
 static const ab_class tresca = {
-    .struct_size = sizeof(ab_class),
-    .kind = AB_MATERIAL,
-    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
-    .gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED,
-    .nparam = sizeof params / sizeof *params,
-    .nstate = 1,
+    SOIL_CLASS_HEAD,
     .name = "tresca",
     .help = "undrained clay: a largest shear stress, whatever the pressure; softening to a residual",
     .reference = "de Souza Neto, Peric and Owen 2008, section 8.1",
-    .param = params,
-    .state = states,
-    .create = create,
     .destroy = mc_destroy,
     .ops = &ops,
 };
