@@ -5,19 +5,7 @@ set -u
 build=$(realpath "${1:?the build folder}")
 here=$(cd "$(dirname "$0")" && pwd)
 cd "${ABUT_SCRATCH:-$(mktemp -d)}" || exit 1
-missed=0
-must() { # what, then a command that must succeed
-    local what=$1
-    shift
-    if "$@"; then echo "passed  $what"; else echo "MISSED  $what" && missed=$((missed + 1)); fi
-}
-says() { # status, pattern, command ...: it ends so, and says so
-    local status=$1 pattern=$2
-    shift 2
-    "$@" >said 2>&1
-    local got=$?
-    [ $got -eq "$status" ] && grep -Eq "$pattern" said || { echo "        exit $got"; sed 's/^/        /' said; return 1; }
-}
+. "$here/must.bash"
 page=$(realpath "$here/../../docs/stability.md")
 sed -n '/^```yaml$/,/^```$/{/^```/!p}' "$page" >example.yaml
 must "the example of docs/stability.md" "$build/abut" extremes example.yaml -o example -q
