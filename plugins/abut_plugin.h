@@ -1,4 +1,4 @@
-/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.2.
+/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.4.
  *
  * One source file makes one shared object. The object exports one symbol, and it is data:
  *
@@ -23,7 +23,7 @@
  *                the ab_host table and the settings' texts and tables, which live until destroy() has returned.
  *   old state    is never written: state0, stress0 in; state1, stress1 out. The host may call again with the same input.
  *   threads      create, destroy: one at a time. update (materials): several threads at once on disjoint batches of the
- *                same self, so keep no hidden state, no globals, and allocate nothing. find, respond: one thread at a time.
+ *                same self, so keep no hidden state, no globals, and allocate nothing. find, respond, apply: one thread at a time.
  *   returns      0; a positive code: "cut the step and try again"; a negative code: an error. Flag the culprits in
  *                batch->flag and say why through host->message.
  *   structs      each struct that crosses begins with its size in bytes; the host copies min(size, own size) into a zeroed one,
@@ -40,8 +40,9 @@ extern "C" {
 #endif
 
 #define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
-#define AB_ABI_MINOR 3u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
-                            2: density gradients, nearest faces, needs that hang on settings; 3: save and load */
+#define AB_ABI_MINOR 4u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
+                            2: density gradients, nearest faces, needs that hang on settings; 3: save and load;
+                            4: boundaries */
 
 #if defined(__GNUC__)
 #define AB_EXPORT __attribute__((visibility("default")))
@@ -140,7 +141,12 @@ enum ab_gives {
     AB_GIVE_WAVE_SPEED = 4u,  /* fills batch->wave_speed when it is not NULL */
     /* contact */
     AB_GIVE_POINTS = 16u,  /* has find */
-    AB_GIVE_IMPULSE = 32u  /* has respond */
+    AB_GIVE_IMPULSE = 32u, /* has respond */
+    /* boundaries, since 1.4; traction or motion, or both */
+    AB_GIVE_TRACTION = 64u,
+    AB_GIVE_DAMPING = 128u,   /* fills edges->damping */
+    AB_GIVE_STIFFNESS = 256u, /* fills edges->stiffness */
+    AB_GIVE_MOTION = 512u     /* fills edges->prescribed */
 };
 
 typedef struct ab_batch {
@@ -171,20 +177,32 @@ typedef struct ab_material_ops {
 
 /* ---- boundaries ------------------------------------------------------------------------------------------------------- */
 
+/* The edges of a body that one boundary of the scene acts on: pieces of its outer surface, of material points or of finite elements, or the share of it that stands at
+ * a grid node. They follow the material, stretch and turn with it. What is read is as of the start of the step; what is written acts over the step. */
 typedef struct ab_edges {
     uint32_t struct_size, dimension;
-    size_t count, ld;
-    double time, dt;
-    const double *position, *normal, *displacement, *velocity; /* dimension rows; normal outwards */
-    const double *area, *density, *p_wave_speed, *s_wave_speed;
-    double *traction; /* Pa on the body, dimension rows */
+    size_t count, ld; /* all edges of this boundary in one call; an edge keeps its place in the list for the whole run */
+    double time, dt;  /* s; time at the start of the step */
+    const double *position;     /* m, as drawn in the scene; dimension rows */
+    const double *normal;       /* unit, out of the body; dimension rows */
+    const double *displacement; /* m, since the boundary began to act; dimension rows */
+    const double *velocity;     /* m/s; dimension rows */
+    const double *area;         /* m2 (m in plane strain; of the ring, m2, in axisymmetry), now */
+    const double *density, *p_wave_speed, *s_wave_speed; /* of the body there; kg/m3 now, m/s of the material at its start */
+    double *traction; /* Pa on the body, at this place and velocity; dimension rows. Zeroed by the host */
     const double *state0;
     double *state1;
+    /* since 1.4. Zeroed by the host; NULL unless the class gives it */
+    double *damping;    /* Pa s/m, two rows, along the normal and across it, both >= 0: how much less traction a larger velocity gets. With it the host takes the traction at
+                           the mean velocity of the step, which is stable for any light edge; without it at the velocity at its start */
+    double *stiffness;  /* Pa/m, two rows as damping: how much less traction a larger displacement gets; the host keeps dt below its limit */
+    double *prescribed; /* m/s, dimension rows: what the velocity is to be at the end of the step. The host begins with NaN: free */
+    uint8_t *flag;      /* set to 1 for an edge that failed; zeroed by the host */
 } ab_edges;
 
 typedef struct ab_boundary_ops {
     uint32_t struct_size;
-    int (*apply)(void *self, ab_edges *edges);
+    int (*apply)(void *self, ab_edges *edges); /* once a step; one thread at a time */
 } ab_boundary_ops;
 
 /* ---- contact ---------------------------------------------------------------------------------------------------------- */
