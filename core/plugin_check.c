@@ -21,6 +21,8 @@ static const uint32_t contact_needs = AB_NEED_SHARED_NODES | AB_NEED_MASS_GRADIE
                                       AB_NEED_NEAREST_FACE | AB_NEED_AREA;
 static const uint32_t material_gives = AB_GIVE_STRESS | AB_GIVE_DISSIPATION | AB_GIVE_WAVE_SPEED;
 static const uint32_t contact_gives = AB_GIVE_POINTS | AB_GIVE_IMPULSE;
+static const uint32_t boundary_needs = AB_NEED_WHOLE_SIDE | AB_NEED_AXES;
+static const uint32_t boundary_gives = AB_GIVE_TRACTION | AB_GIVE_DAMPING | AB_GIVE_STIFFNESS | AB_GIVE_MOTION;
 
 bool ab_check_head(const ab_plugin_head *head, ab_refusal *refusal) {
     if (head->abi_major != AB_ABI_MAJOR || head->abi_minor > AB_ABI_MINOR)
@@ -104,7 +106,7 @@ bool ab_param_allows(const ab_param *param, double value) {
 
 static bool check_param(const ab_class *class_, uint32_t index, ab_refusal *refusal) {
     const ab_param *param = &class_->param[index];
-    const uint32_t known = AB_REQUIRED | AB_MIN_OPEN | AB_MAX_OPEN | AB_OR_DIRECTION | AB_COLUMNS_2;
+    const uint32_t known = AB_REQUIRED | AB_MIN_OPEN | AB_MAX_OPEN | AB_OR_DIRECTION | AB_COLUMNS_2 | AB_INCREASING;
     if (!is_word(param->name))
         return ab_refuse(refusal, "(class '%s') has no name for setting %u, or one that is no word", class_->name, index);
 #define SETTING "(class '%s', setting '%s') "
@@ -117,8 +119,9 @@ static bool check_param(const ab_class *class_, uint32_t index, ab_refusal *refu
         return ab_refuse(refusal, SETTING "has unknown flags 0x%x", class_->name, param->name, param->flags & ~known);
     if ((param->flags & AB_OR_DIRECTION) && param->type != AB_CHOICE)
         return ab_refuse(refusal, SETTING "has AB_OR_DIRECTION and is not AB_CHOICE", class_->name, param->name);
-    if ((param->flags & AB_COLUMNS_2) && param->type != AB_TABLE)
-        return ab_refuse(refusal, SETTING "has AB_COLUMNS_2 and is not AB_TABLE", class_->name, param->name);
+    if ((param->flags & (AB_COLUMNS_2 | AB_INCREASING)) && param->type != AB_TABLE)
+        return ab_refuse(refusal, SETTING "has %s and is not AB_TABLE", class_->name, param->name,
+                         param->flags & AB_COLUMNS_2 ? "AB_COLUMNS_2" : "AB_INCREASING");
     if (!is_text(param->help) || !*param->help) return ab_refuse(refusal, SETTING "has no line of help", class_->name, param->name);
     if ((param->type == AB_REAL || param->type == AB_TABLE) ? !is_text(param->unit) || !*param->unit : param->unit && !is_text(param->unit))
         return ab_refuse(refusal, SETTING "has no unit; write \"1\" for a pure number", class_->name, param->name);
@@ -195,7 +198,13 @@ static bool check_operations(ab_class_copy *copy, ab_refusal *refusal) {
     case AB_BOUNDARY:
         if (!copy_struct(&copy->boundary, sizeof copy->boundary, class_->ops, BOUNDARY_SMALLEST, "ab_boundary_ops", class_, refusal))
             return false;
-        if (!copy->boundary.apply) missing = "apply";
+        needs = boundary_needs, gives = boundary_gives;
+        if (!copy->boundary.apply)
+            missing = "apply";
+        else if (!(class_->gives & (AB_GIVE_TRACTION | AB_GIVE_MOTION)))
+            missing = "AB_GIVE_TRACTION or AB_GIVE_MOTION among what it gives";
+        else if ((class_->gives & (AB_GIVE_DAMPING | AB_GIVE_STIFFNESS)) && !(class_->gives & AB_GIVE_TRACTION))
+            missing = "AB_GIVE_TRACTION, which damping and stiffness are of, among what it gives";
         break;
     default:
         if (!copy_struct(&copy->contact, sizeof copy->contact, class_->ops, CONTACT_SMALLEST, "ab_contact_ops", class_, refusal))

@@ -66,12 +66,14 @@ enum ab_param_flags {
     AB_MAX_OPEN = 4u,     /* the value must be < max, not <= */
     AB_OR_DIRECTION = 8u, /* AB_CHOICE only: a vector [x, y(, z)] may stand instead of a word;
                              then value.integer = -1 and value.table is the unit vector, 3 numbers */
-    AB_COLUMNS_2 = 16u    /* AB_TABLE only: each row is a pair */
+    AB_COLUMNS_2 = 16u,   /* AB_TABLE only: each row is a pair */
+    AB_INCREASING = 32u   /* AB_TABLE only, since 1.4: the first column (a time) grows from row to row */
 };
 
 typedef struct ab_param {
     const char *name;    /* the key in the scene, lower_case; the field's usual symbol where there is one (E, nu) */
-    const char *unit;    /* SI unit as UDUNITS reads it: "Pa", "kg m-3"; "1" for a pure number */
+    const char *unit;    /* SI unit as UDUNITS reads it: "Pa", "kg m-3"; "1" for a pure number. AB_TABLE, since 1.4: of each column, "s, m s-2";
+                            the last one stands for the columns after it, too */
     const char *help;    /* one line */
     const char *choices; /* AB_CHOICE: words separated by '|' ; else NULL */
     uint32_t type;       /* enum ab_type */
@@ -133,7 +135,10 @@ enum ab_needs { /* what a class asks for; what nobody asks for is not computed a
     /* since 1.2; these may be asked for by needs_with, and no others */
     AB_NEED_DENSITY_GRADIENT = 4096u, /* contact finders: trace->density_gradient */
     AB_NEED_NEAREST_FACE = 8192u,     /* contact finders: trace->face_normal, face_distance, face_turn: of bodies that have faces (finite elements, rigid) */
-    AB_NEED_AREA = 16384u             /* responses: a points->area that adds up to the length of the face: points->measure_area */
+    AB_NEED_AREA = 16384u,            /* responses: a points->area that adds up to the length of the face: points->measure_area */
+    /* boundaries, since 1.4: what `abut plugins check` must not ask of a class */
+    AB_NEED_WHOLE_SIDE = 32768u, /* its answer at an edge hangs on the other edges of the call */
+    AB_NEED_AXES = 65536u        /* its settings are of x and y of space (beyond those with AB_OR_DIRECTION): turned edges do not get turned answers */
 };
 enum ab_gives {
     AB_GIVE_STRESS = 1u,
