@@ -161,6 +161,19 @@ ab_status ab_checkpoints_step(ab_checkpoints *k, ab_schedule *s, ab_results *res
     return AB_OK;
 }
 
+void ab_checkpoints_tell(const ab_checkpoints *k, const ab_schedule *s, const char *from, FILE *stream) {
+    static const char *const AGAIN = "the same bits again up to here; with a smaller output.every its frames show how it came";
+    if (k->last == s->number)
+        fprintf(stream, "a checkpoint of this moment, step %ld, is %s\n", k->last, k->path);
+    else if (k->last >= 0)
+        fprintf(stream, "the last checkpoint is of step %ld; --restart %s computes %s\n", k->last, k->path, AGAIN);
+    else if (from)
+        fprintf(stream, "there is no checkpoint since; --restart %s computes %s\n", from, AGAIN);
+    else
+        fprintf(stream,
+                "there is no checkpoint: with checkpoint: {wall: 10} in the scene a run can be gone over again from shortly before\n");
+}
+
 void ab_checkpoints_end(ab_checkpoints *k) {
     free(k->path), free(k->previous);
     *k = (ab_checkpoints){0};

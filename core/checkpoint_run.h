@@ -17,6 +17,8 @@ typedef struct ab_checkpoints {
 ab_status ab_checkpoints_begin(ab_checkpoints *checkpoints, const ab_schedule *schedule, const char *folder, ab_report *report);
 /* After a step and its results: writes one where it is due, or `now`. */
 ab_status ab_checkpoints_step(ab_checkpoints *checkpoints, ab_schedule *schedule, ab_results *results, bool now, ab_report *report);
+/* Of a run that failed: from where it can be gone over again. `from`: the checkpoint it was started from, or NULL. */
+void ab_checkpoints_tell(const ab_checkpoints *checkpoints, const ab_schedule *schedule, const char *from, FILE *stream);
 void ab_checkpoints_end(ab_checkpoints *checkpoints);
 
 /* A checkpoint to go on from: of this version, and of this scene but for what may change. AB_BAD_INPUT names the first difference. */

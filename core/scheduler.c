@@ -4,48 +4,20 @@
 
 #include <math.h>
 #include <omp.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "core/checkpoint_run.h"
 #include "core/doubts.h"
 #include "core/memory.h"
 #include "core/plan.h"
 #include "core/progress.h"
+#include "core/stop.h"
 #include "core/watchdog.h"
 
 static const double MOST_STEPS = 1e12; /* of a run; more would take years */
 static const double COLLAPSED = 1e-9;  /* of the first limit of the step: a run that has come to this does not end */
-
-static volatile sig_atomic_t stop_signal; /* the one thing a signal handler may write */
-
-/* The first one ends the run after its step; whoever sends a second one does not want to wait: files are whole at any moment. */
-static void on_signal(int number) {
-    if (stop_signal) _exit(128 + number);
-    stop_signal = number;
-}
-
-/* Ways a run may be asked to end: each closes its files first. Writing past a file-size limit is an error of the write, not a death. */
-enum { ENDINGS = 3 };
-static const int ENDING[ENDINGS] = {SIGINT, SIGTERM, SIGHUP};
-typedef struct signal_keeper {
-    struct sigaction ending[ENDINGS], size;
-} signal_keeper;
-
-static void catch_signals(signal_keeper *old) {
-    const struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
-    stop_signal = 0;
-    for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &action, &old->ending[k]);
-    sigaction(SIGXFSZ, &ignore, &old->size);
-}
-
-static void release_signals(const signal_keeper *old) {
-    for (int k = 0; k < ENDINGS; ++k) sigaction(ENDING[k], &old->ending[k], NULL);
-    sigaction(SIGXFSZ, &old->size, NULL);
-}
 
 static double seconds(clockid_t clock) {
     struct timespec t;
@@ -242,6 +214,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     }
     ab_interaction *in = s->interaction;
     ab_status status = AB_OK;
+    s->half_done = true;
     TIMED(PHASE_BEGIN, status = EACH(begin));
     AB_TRY(status);
     if (any_early) {
@@ -269,6 +242,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     s->number += 1;
     s->time = scene->time_dt > 0.0 && fabs(dt - scene->time_dt) < 1e-9 * dt ? (double)s->number * scene->time_dt : s->time + dt;
     if (scene->time_end - s->time < 1e-9 * dt) s->time = scene->time_end;
+    s->half_done = false;
     ab_schedule_look(s);
     return AB_OK;
 }
@@ -290,10 +264,12 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
 
 /* ---- a run --------------------------------------------------------------------------------------------------------------- */
 
-/* Steps until the end, a failure or a signal. A run that is stopped between two steps leaves a checkpoint. */
+/* Steps until the end, a failure or a signal. A run that is stopped between two steps leaves a checkpoint; one that fails within a step cannot. */
 static ab_status advance(ab_schedule *s, ab_results *results, ab_checkpoints *checkpoints, ab_progress *progress, ab_report *report) {
-    while (s->time < s->scene->time_end && !stop_signal) {
-        AB_TRY(ab_schedule_step(s, report));
+    while (s->time < s->scene->time_end && !ab_stop_signal()) {
+        const ab_status stepped = ab_schedule_step(s, report);
+        if (stepped != AB_OK && !s->half_done) TIMED(PHASE_RESULTS, ab_checkpoints_step(checkpoints, s, results, true, report));
+        AB_TRY(stepped);
         ab_state_view view;
         ab_schedule_view(s, &view);
         ab_status status = AB_OK;
@@ -305,7 +281,7 @@ static ab_status advance(ab_schedule *s, ab_results *results, ab_checkpoints *ch
         AB_TRY(watched);
         AB_TRY(status);
     }
-    return stop_signal ? ab_checkpoints_step(checkpoints, s, results, true, report) : AB_OK;
+    return ab_stop_signal() ? ab_checkpoints_step(checkpoints, s, results, true, report) : AB_OK;
 }
 
 static void count_work(ab_schedule *s) {
@@ -350,8 +326,8 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
         return status;
     }
     ab_report_print(report, stderr);
-    signal_keeper keeper;
-    catch_signals(&keeper); /* before the first byte is written: a full disk or a signal must not end the program where nothing is said */
+    ab_stop_keeper keeper;
+    ab_stop_catch(&keeper); /* before the first byte is written: a full disk or a signal must not end the program where nothing is said */
     ab_state_view view;
     ab_results *results = NULL;
     ab_checkpoints checkpoints = {0};
@@ -361,7 +337,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status != AB_OK) {
         ab_results_destroy(results);
         ab_schedule_destroy(s);
-        release_signals(&keeper);
+        ab_stop_release(&keeper);
         return status;
     }
     const long first = s->number;
@@ -388,14 +364,13 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     if (status != AB_OK) {
         const char *why = ab_report_first_error(report);
         snprintf(outcome, sizeof outcome, "failed: %s", why ? why : "no reason given");
-        if (!options->quiet && checkpoints.last >= 0)
-            fprintf(stderr, "the last checkpoint is of step %ld; go on with --restart %s\n", checkpoints.last, checkpoints.path);
+        if (!options->quiet) ab_checkpoints_tell(&checkpoints, s, options->restart, stderr);
         facts.outcome = outcome;
-    } else if (stop_signal) {
+    } else if (ab_stop_signal()) {
         if (!options->quiet) fprintf(stderr, "stopped at t = %.9g s; go on with --restart %s\n", s->time, checkpoints.path);
-        snprintf(outcome, sizeof outcome, "stopped by signal %d", (int)stop_signal);
+        snprintf(outcome, sizeof outcome, "stopped by signal %d", ab_stop_signal());
         facts.outcome = outcome;
-        status = (ab_status)(128 + stop_signal);
+        status = (ab_status)(128 + ab_stop_signal());
     }
     const double stepping = facts.wall_seconds - s->phase_seconds[PHASE_RESULTS];
     const double rate = stepping > 0.0 ? (double)(s->number - first) / stepping : 0.0;
@@ -425,6 +400,6 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     ab_text_clear(&plan_json);
     ab_checkpoints_end(&checkpoints);
     ab_schedule_destroy(s);
-    release_signals(&keeper);
+    ab_stop_release(&keeper);
     return status;
 }

@@ -28,6 +28,7 @@ typedef struct ab_schedule { /* a scene on its way through time */
     long number;
     const char *limit; /* what binds dt */
     bool warned;       /* of a dt above the limit */
+    bool half_done;    /* within a step, or after one that failed: no state to go on from */
     ab_energy *energy, *energy_start, total;
     ab_motion *motion;
     double total_now, total_start;         /* J: all terms of the ledger */

@@ -45,21 +45,56 @@ for signal in INT TERM HUP; do
         say "SIG$signal: exit $? of a run that goes on from its checkpoint" "$out.log"
 done
 
-# Whoever sends a second signal is not kept waiting, and the frames can be read. Stopped by SIGSTOP, the run meets both at once.
+# Two signals at once are one: `timeout` sends its own to the program and to its group. Stopped by SIGSTOP, a run meets both at the same moment.
+begin() { # settings: a run in $out that has written three frames; its process is $run
+    rm -rf "$out"
+    "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" "$@" >"$out.log" 2>&1 &
+    run=$!
+    for _ in $(seq 200); do
+        [ "$(grep -c '<Time ' "$out/results.xdmf" 2>/dev/null)" -ge 3 ] 2>/dev/null && break
+        sleep 0.05
+    done
+}
+good_order() { # what, status: the run in $out was ended with all that it leaves
+    [ "$2" -eq 130 ] || [ "$2" -eq 143 ] || say "$1: exit $2" "$out.log"
+    [ -f "$out/checkpoint.abut" ] && [ -f "$out/summary.json" ] || say "$1: the run was ended at once, without a checkpoint"
+    /usr/bin/python3 tests/verification/check_results.py "$out" >"$out.check" 2>&1 || say "$1: the results cannot be read" "$out.check"
+}
 out=$scratch/twice
-"$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" >"$out.log" 2>&1 &
-run=$!
-for _ in $(seq 200); do
-    [ "$(grep -c '<Time ' "$out/results.xdmf" 2>/dev/null)" -ge 3 ] 2>/dev/null && break
-    sleep 0.05
-done
+begin
 kill -STOP $run
 kill -TERM $run
 kill -INT $run
 kill -CONT $run
 wait $run
+good_order "two signals at once" $?
+rm -rf "$out"
+timeout -s INT 0.5 "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" >"$out.log" 2>&1
+[ $? -eq 124 ] || say "a run under timeout: exit $?" "$out.log"
+good_order "a run under timeout" 130
+
+# Whoever sends another one later does not want to wait, and the frames can be read: here a step that never ends.
+mkdir "$scratch/loops"
+cp "$build/tests/plugins/broken/broken_material_LOOPS.so" "$scratch/loops" # for ever, where something is strained by more than 0.05 in a step
+sed 's/model: linear-elastic/model: my-law/' "$scratch/scene.yaml" >"$scratch/loops.yaml"
+"$build/abut" run "$scratch/loops.yaml" --quiet -j 1 -o "$out" --plugin-path "$scratch/loops" --set output.every=1e-4 \
+    --set 'bodies.other.body_force=["t < 0.01 ? 0 : 1e7*(x - 3)", 0]' >"$out.log" 2>&1 &
+run=$!
+for _ in $(seq 200); do
+    [ "$(grep -c '<Time ' "$out/results.xdmf" 2>/dev/null)" -ge 100 ] 2>/dev/null && break
+    sleep 0.05
+done
+sleep 0.2
+kill -TERM $run
+sleep 0.1
+kill -TERM $run
+sleep 0.1
+kill -0 $run 2>/dev/null || say "a signal too many: a second one ended the run that came 0.1 s after the first"
+sleep 0.6
+kill -INT $run
+wait $run
 status=$?
-[ $status -eq 130 ] || [ $status -eq 143 ] || say "two signals: exit $status" "$out.log"
+[ $status -eq 130 ] || say "two signals: exit $status, wanted 130" "$out.log"
 [ ! -f "$out/summary.json" ] || say "two signals: the run was ended in good order, not at once"
 /usr/bin/python3 tests/verification/check_results.py "$out" --partial >"$out.check" 2>&1 || say "two signals: the results cannot be read" "$out.check"
 

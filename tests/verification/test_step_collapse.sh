@@ -48,3 +48,20 @@ PYTHON
 # An end that leaves 1e-12 of a step to go
 scene "0.2*20*(1 + 1e-12)" 0 >"$scratch/end.yaml"
 "$build/abut" run "$scratch/end.yaml" --quiet -j 1 -o "$scratch/end"
+
+# The collapse is seen between two steps, so there is a checkpoint of that moment. A failure within a step has no whole state: the checkpoint before is named, from which the same bits come again, with
+# as many frames as one likes; or it is said that there is none.
+[ -f "$scratch/collapse/checkpoint.abut" ] || { echo "a collapse leaves no checkpoint"; exit 1; }
+fails() { # what it says on its way, settings: the body flies through the side of the grid
+    local says=$1 status=0
+    shift
+    "$build/abut" run "$scratch/wall.yaml" -j 1 -o "$scratch/wall" "$@" >"$scratch/log" 2>&1 || status=$?
+    [ $status -eq 1 ] && grep -qE "$says" "$scratch/log" || { cat "$scratch/log"; echo "ended with status $status, wanted 1 and: $says"; exit 1; }
+    sed -n "s/^error: //p" "$scratch/log" >"$scratch/$((++failures))"
+}
+failures=0
+scene 10 2 | sed "s/100, 4/20, 4/" >"$scratch/wall.yaml"
+fails "there is no checkpoint: with checkpoint: "
+fails "the last checkpoint is of step [0-9]*0; --restart $scratch/wall/checkpoint.abut computes the same bits" --set checkpoint.steps=10
+fails "there is no checkpoint since; --restart $scratch/wall/checkpoint.abut computes" --restart "$scratch/wall/checkpoint.abut" --set output.every=1e-4
+cmp "$scratch/1" "$scratch/2" && cmp "$scratch/1" "$scratch/3"
