@@ -30,6 +30,7 @@ variant impact "free at their sides, grid moved both ways" constants.margin=2 co
 variant impact "in a frame that moves with the bars" constants.frame=2e-3
 variant impact "in a frame that moves against them" constants.frame=-5e-4
 variant impact "friction instead of none" 'contact[0]={bodies: [a, b], algorithm: multi-velocity, response: coulomb, friction: 1e6}'
+variant impact "impedances 1 to 10 at 80 cells, surfaces that meet on a grid line" constants.ratio=10 constants.gap=2
 variant impact "impedances 1 to 10" constants.ratio=10 constants.cells=160
 variant impact "impedances 1 to 10, bodies in the other order, grid moved" constants.ratio=10 constants.cells=160 constants.shift=0.37 'contact[0].bodies=[b,a]'
 variant diagonal "grid moved by 0.37 of a cell" constants.shift=0.37
