@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/boundary.h"
 #include "core/scene_text.h"
 #include "core/watchdog.h"
 
@@ -96,6 +97,11 @@ static ab_status keep_all(ab_schedule *s, ab_results *results, ab_checkpoint *c)
         if (s->interaction) {
             ab_checkpoint_enter(c, "contacts");
             s->interaction->keep(s->interaction, c);
+            ab_checkpoint_leave(c);
+        }
+        if (s->boundaries) {
+            ab_checkpoint_enter(c, "boundaries");
+            ab_boundaries_keep(s->boundaries, c);
             ab_checkpoint_leave(c);
         }
         ab_checkpoint_enter(c, "results");

@@ -71,6 +71,22 @@ typedef struct ab_region {
     const uint64_t *key, *cells;
 } ab_region;
 
+/* The edges of a body that one boundary plugin acts on (plugins/abut_plugin.h: ab_edges), as they are in this step. The velocity of an edge is the sum of weight x
+ * velocity of dof, and an impulse j on it is weight x j on the dofs: what a traction does at the nodes and what its plugin is told of their motion belong
+ * together, so that a dashpot can never make energy. An edge keeps its place in the list for the whole run; one whose material is gone (through an outflow side) has
+ * area 0 and no dofs. */
+typedef struct ab_edge_list {
+    size_t count, ld;
+    const double *position;                    /* m from the grid's corner; 2 rows of ld, as normal */
+    const double *normal;                      /* unit, out of the body */
+    const double *area;                        /* m2 (m in plane strain; of the ring in axisymmetric scenes), now */
+    const double *density;                     /* kg/m3, of the body there, now */
+    const double *p_wave_speed, *s_wave_speed; /* m/s */
+    const size_t *start;                       /* count + 1: dofs of edge e are dof[start[e]] .. dof[start[e+1]-1] */
+    const uint32_t *dof;
+    const double *weight; /* not negative, sum 1 */
+} ab_edge_list;
+
 /* Elements for results: how a body's points (nodes) hang together. */
 typedef struct ab_cells {
     size_t count;
@@ -130,6 +146,9 @@ typedef struct ab_domain_ops {
     /* Force, N, and moment about the origin of the scene, N m in [2], that held and prescribed nodes, or the motion prescribed to a rigid body, put on the
      * body in the last step; 0 before the first. NULL: the body has none. */
     void (*reaction)(const ab_domain *, double force[3]);
+    /* The edges that boundary `number` of the scene acts on, which creation has chosen (and reported where there are none). After trial velocities are there; the
+     * arrays stay the domain's and are valid until the next call with this number. NULL: no boundary plugin can act on such a body yet. */
+    ab_status (*edges)(ab_domain *, size_t number, const ab_step *, ab_edge_list *, ab_report *);
     /* results */
     void (*cells)(const ab_domain *, ab_cells *); /* NULL: a cloud of points */
     size_t (*count)(const ab_domain *);           /* points (or nodes) that can be written now */

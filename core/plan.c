@@ -15,6 +15,19 @@ typedef void (*item)(ab_text *text, size_t number, const char *name, const char 
 
 static const char *kind_name(uint32_t kind) { return kind == AB_MATERIAL ? "material" : kind == AB_BOUNDARY ? "boundary" : "contact"; }
 
+/* Boundary plugins in use. */
+static void each_boundary_plugin(const ab_scene *scene, item tell, ab_text *text, size_t *number) {
+    char why[256];
+    for (size_t k = 0; k < scene->boundary_count; k++) {
+        const ab_boundary_spec *boundary = &scene->boundaries[k];
+        bool known = false;
+        for (size_t i = 0; i < k; i++) known = known || scene->boundaries[i].loaded == boundary->loaded;
+        if (known) continue;
+        snprintf(why, sizeof why, "boundary of body '%s'", scene->bodies[boundary->body].name);
+        tell(text, (*number)++, boundary->loaded->class_.name, why, boundary->loaded);
+    }
+}
+
 /* Each plugin class in use once, with the first reason for it. */
 static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
     size_t number = 0;
@@ -42,6 +55,7 @@ static void each_plugin(const ab_scene *scene, item tell, ab_text *text) {
                  scene->bodies[contact->body[0]].name, scene->bodies[contact->body[1]].name);
         tell(text, number++, loaded->class_.name, why, loaded);
     }
+    each_boundary_plugin(scene, tell, text, &number);
 }
 
 /* What a class of contact looks at: for finders what they see of a body, for responses what they are told of a contact point. */
@@ -125,7 +139,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
              NULL);
     else if (!contact_asks(scene, SIZE_MAX, AB_NEED_SURFACE) && !surface_points(scene))
         tell(text, number++, "outlines", "no contact asks for the points and faces of outlines", NULL);
-    tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
+    if (!scene->boundary_count) tell(text, number++, "boundaries", "no side asks for a boundary plugin: no boundary pass", NULL);
     if (scene->space == AB_SPACE_PLANE_STRAIN)
         tell(text, number++, "third dimension", "plane strain: no third component of velocity and force, no yz and zx of stress", NULL);
     else
@@ -261,7 +275,8 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
         add_words(text, ", \"needs\": ", needs);
         ab_text_add(text, ", \"passes\": [\"find\", \"respond\"]}");
     }
-    ab_text_add(text, "],\n  \"contact_passes\": %zu,\n  \"boundary_passes\": 0,\n  \"plugins\": [", scene->contact_count);
+    ab_text_add(text, "],\n  \"contact_passes\": %zu,\n  \"boundary_passes\": %zu,\n  \"plugins\": [", scene->contact_count,
+                scene->boundary_count);
     each_plugin(scene, json_plugin, text);
     ab_text_add(text, "],\n  \"not_paid_for\": [");
     each_left_out(schedule, json_left_out, text);

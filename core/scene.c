@@ -32,6 +32,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_check_grid(r, root);
     ab_scene_check_axisymmetric(r);
     ab_scene_take_loads(r, v[TOP_LOADS]);
+    ab_scene_take_boundaries(r, v[TOP_BOUNDARIES]);
     ab_scene_take_monitors(r, v[TOP_MONITORS]);
     ab_scene_take_history(r, v[TOP_HISTORY]);
     ab_scene_take_output(r, v[TOP_OUTPUT]);

@@ -153,6 +153,14 @@ typedef struct ab_load_spec {
     ab_number force[2];    /* N (per m of thickness), formulas of t */
 } ab_load_spec;
 
+typedef struct ab_boundary_spec { /* a boundary plugin on part of a body's outline */
+    ab_mark mark;
+    size_t body;
+    ab_where where;
+    const ab_loaded_class *loaded;
+    ab_value *settings;
+} ab_boundary_spec;
+
 typedef struct ab_monitor_spec {
     char *name;
     ab_mark mark;
@@ -253,6 +261,8 @@ typedef struct ab_scene {
     size_t contact_count;
     ab_load_spec *loads;
     size_t load_count;
+    ab_boundary_spec *boundaries;
+    size_t boundary_count;
     ab_monitor_spec *monitors;
     size_t monitor_count;
     ab_expect_spec *expects;

@@ -35,7 +35,8 @@ static const ab_key top[] = {
     [TOP_OUTPUT] = {"output", AB_KEY_SECTION, .help = "frames of results.h5"},
     [TOP_EXPECT] = {"expect", AB_KEY_SECTION, .help = "list of answers that must come out"},
     [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
-    [TOP_BOUNDARIES] = {"boundaries", AB_KEY_LATER, .help = "use the sides of the grid (grid.sides) and loads"},
+    [TOP_BOUNDARIES] = {"boundaries", AB_KEY_SECTION,
+                        .help = "list of boundary plugins on parts of outlines: sides that absorb waves, bases that shake"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_SECTION, .help = "when the state of the run is saved, to go on from"},
     [TOP_CHECKED] =
         {"checked", AB_KEY_FLAG, .initial = "false",
@@ -316,6 +317,19 @@ SECTION(load, "loads[i]", load, NULL, "A list. `where` with `traction` or `press
         "\"9.81e3*max(0, 5-y)\"}\n  - {body: beam, at: [3.75, 0.25], force: "
         "[0, \"-2 kN\"]}\n");
 
+static const ab_key boundary[] = {
+    [BOUNDARY_ON] = {"on", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a body"},
+    [BOUNDARY_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED,
+                        .help = "part of its outline at the start; it follows the material"},
+    [BOUNDARY_PLUGIN] = {"boundary", AB_KEY_NAME, .flags = AB_KEY_REQUIRED,
+                         .help = "name of a boundary plugin (`abut plugins` lists them)"},
+};
+SECTION(boundary, "boundaries[i]", boundary, "every setting that the plugin declares (`abut plugins show NAME`)",
+        "A list. A boundary plugin turns the state of a piece of outline (place, normal, displacement, velocity, wave speeds) into a "
+        "traction on it, or "
+        "says how it moves.",
+        "boundaries:\n  - {on: soil, where: {side: bottom}, boundary: viscous}\n");
+
 static const ab_key where[] = {
     [WHERE_ALL] = {"all", AB_KEY_FLAG, .help = "true: everywhere"},
     [WHERE_SIDE] = {"side", AB_KEY_WORD, .words = "left|right|bottom|top", .help = "the part of the outline that faces this way"},
@@ -491,14 +505,20 @@ static const ab_key extreme[] = {
 SECTION(extreme, "extremes.vary[i]", extreme, NULL, "A list.",
         "- {name: friction, set: constants.mu, from: 1e-3, to: 1e6}\n- {set: constants.turned, values: [0, 1], same: 1e-10}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,      &ab_section_damping,    &ab_section_time,
-                                         &ab_section_grid,     &ab_section_sides,      &ab_section_material,
-                                         &ab_section_body,     &ab_section_shape,      &ab_section_disc,
-                                         &ab_section_ring,     &ab_section_fill,       &ab_section_basis,
-                                         &ab_section_transfer, &ab_section_surface,    &ab_section_mesh,
-                                         &ab_section_patch,    &ab_section_arc,        &ab_section_fix,
-                                         &ab_section_motion,   &ab_section_contact,    &ab_section_load,
-                                         &ab_section_where,    &ab_section_monitor,    &ab_section_history,
-                                         &ab_section_output,   &ab_section_expect,     &ab_section_trade,
-                                         &ab_section_ladder,   &ab_section_watchdog,   &ab_section_extremes,
-                                         &ab_section_extreme,  &ab_section_checkpoint, NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,        &ab_section_damping,
+                                         &ab_section_time,       &ab_section_grid,
+                                         &ab_section_sides,      &ab_section_material,
+                                         &ab_section_body,       &ab_section_shape,
+                                         &ab_section_disc,       &ab_section_ring,
+                                         &ab_section_fill,       &ab_section_basis,
+                                         &ab_section_transfer,   &ab_section_surface,
+                                         &ab_section_mesh,       &ab_section_patch,
+                                         &ab_section_arc,        &ab_section_fix,
+                                         &ab_section_motion,     &ab_section_contact,
+                                         &ab_section_load,       &ab_section_boundary,
+                                         &ab_section_where,      &ab_section_monitor,
+                                         &ab_section_history,    &ab_section_output,
+                                         &ab_section_expect,     &ab_section_trade,
+                                         &ab_section_ladder,     &ab_section_watchdog,
+                                         &ab_section_extremes,   &ab_section_extreme,
+                                         &ab_section_checkpoint, NULL};

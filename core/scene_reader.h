@@ -30,6 +30,7 @@ void ab_scene_take_materials(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_bodies(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_contacts(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_loads(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_boundaries(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_monitors(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_history(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_checkpoint(ab_scene_reader *reader, const ab_node *node);

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/boundary.h"
 #include "core/checkpoint_run.h"
 #include "core/doubts.h"
 #include "core/memory.h"
@@ -25,9 +26,9 @@ static double seconds(clockid_t clock) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-enum { PHASE_BEGIN, PHASE_CONTACT, PHASE_FINISH, PHASE_REMAP, PHASE_STRESS, PHASE_RESULTS, PHASES };
+enum { PHASE_BEGIN, PHASE_CONTACT, PHASE_FINISH, PHASE_REMAP, PHASE_STRESS, PHASE_RESULTS, PHASE_BOUNDARY, PHASES };
 static const char *const PHASE_NAMES[PHASES] = {"nodes from points",          "contact", "points from nodes", "nodes again",
-                                                "stress and points to nodes", "results"};
+                                                "stress and points to nodes", "results", "boundaries"};
 
 static double choose_dt(ab_schedule *s);
 
@@ -62,6 +63,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     }
     ab_report_watch(report, NULL, NULL);
     ab_progress_end(&progress);
+    if (status == AB_OK && scene->boundary_count) status = ab_boundaries_create(scene, s->domains, &s->boundaries, report);
     if (status == AB_OK && scene->contact_count) status = options->interact(scene, s->domains, &s->interaction, report);
     if (status != AB_OK) {
         ab_schedule_destroy(s);
@@ -94,6 +96,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
 void ab_schedule_destroy(ab_schedule *s) {
     if (!s) return;
     if (s->interaction) s->interaction->destroy(s->interaction);
+    ab_boundaries_destroy(s->boundaries);
     for (size_t b = 0; s->domains && b < s->body_count; ++b)
         if (s->domains[b]) s->domains[b]->ops->destroy(s->domains[b]);
     free(s->domains), free(s->energy), free(s->energy_start), free(s->motion), free(s);
@@ -112,6 +115,7 @@ void ab_schedule_look(ab_schedule *s) {
         ab_energy *e = s->energy + b;
         s->domains[b]->ops->ledger(s->domains[b], e, s->motion + b);
         if (s->interaction) s->interaction->book(s->interaction, b, &e->friction, &e->contact);
+        if (s->boundaries) e->boundary += ab_boundaries_taken(s->boundaries, b);
         total.kinetic += e->kinetic, total.strain += e->strain, total.potential += e->potential, total.plastic += e->plastic,
             total.friction += e->friction;
         total.contact += e->contact, total.boundary += e->boundary, total.damping += e->damping, total.external += e->external,
@@ -128,7 +132,8 @@ static double choose_dt(ab_schedule *s) {
     double critical = INFINITY;
     for (size_t b = 0; b < s->body_count; ++b) {
         const char *limit = "";
-        const double dt = s->domains[b]->ops->critical_dt(s->domains[b], &limit);
+        double dt = s->domains[b]->ops->critical_dt(s->domains[b], &limit);
+        if (s->boundaries) dt = ab_boundaries_critical_dt(s->boundaries, b, dt, &limit);
         if (dt < critical) critical = dt, s->limit = limit;
     }
     if (s->interaction && s->interaction->critical_dt) {
@@ -203,7 +208,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     const double dt = choose_dt(s);
     AB_TRY(stop_collapse(s, report));
-    if (s->interaction) warn_of_dt(s, report);
+    if (s->interaction || s->boundaries) warn_of_dt(s, report);
     ab_step step = {.time = s->time, .dt = dt, .number = s->number};
     for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);
     step.damping = s->time < scene->damping_until ? scene->damping_local : 0.0;
@@ -213,6 +218,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
         any_remap = any_remap || s->domains[b]->ops->remap;
     }
     ab_interaction *in = s->interaction;
+    ab_boundaries *edges = s->boundaries;
     ab_status status = AB_OK;
     s->half_done = true;
     TIMED(PHASE_BEGIN, status = EACH(begin));
@@ -225,14 +231,19 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     }
     TIMED(PHASE_BEGIN, status = EACH(trial));
     AB_TRY(status);
+    if (edges) TIMED(PHASE_BOUNDARY, status = ab_boundaries_apply(edges, &step, report));
+    AB_TRY(status);
     if (in) TIMED(PHASE_CONTACT, status = in->solve(in, &step, AB_STAGE_DYNAMIC, report));
     AB_TRY(status);
+    if (in && edges) TIMED(PHASE_BOUNDARY, ab_boundaries_hold(edges, &step));
     TIMED(PHASE_FINISH, status = EACH(finish));
     AB_TRY(status);
     if (in) TIMED(PHASE_CONTACT, in->settle(in, &step));
+    if (edges) TIMED(PHASE_BOUNDARY, ab_boundaries_settle(edges, &step));
     if (any_remap) {
         TIMED(PHASE_REMAP, status = EACH(remap));
         AB_TRY(status);
+        if (edges) TIMED(PHASE_BOUNDARY, ab_boundaries_remap(edges, &step));
         if (in) TIMED(PHASE_CONTACT, status = in->solve(in, &step, AB_STAGE_KINEMATIC, report));
         AB_TRY(status);
     }
@@ -377,7 +388,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     facts.point_steps_per_second = rate * (double)s->points;
     facts.element_steps_per_second = rate * (double)s->elements;
     facts.peak_bytes = ab_memory_peak();
-    for (int p = 0; p < PHASES; ++p) {
+    for (int p = 0; p < (s->boundaries ? PHASES : PHASE_BOUNDARY); ++p) {
         facts.phase_names[p] = PHASE_NAMES[p];
         facts.phase_seconds[p] = s->phase_seconds[p];
     }

@@ -23,7 +23,8 @@ typedef struct ab_schedule { /* a scene on its way through time */
     const ab_scene *scene;
     ab_domain **domains;
     size_t body_count;
-    ab_interaction *interaction; /* NULL without contacts */
+    ab_interaction *interaction;      /* NULL without contacts */
+    struct ab_boundaries *boundaries; /* NULL without boundary plugins */
     double time, dt, critical_dt, first_critical_dt;
     long number;
     const char *limit; /* what binds dt */

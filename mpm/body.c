@@ -43,6 +43,7 @@ static void destroy(ab_domain *domain) {
     mpm_surface_destroy(body->surface);
     mpm_outline_destroy(body->outline);
     mpm_body_force_destroy(body);
+    mpm_edges_destroy(body);
     free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
 }
 
@@ -82,6 +83,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
 static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report) {
     mpm_light_follow(body);
     mpm_loads_follow(body, step);
+    mpm_edges_follow(body, step);
     mpm_outline_follow(body, step);
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
                            (body->material->loaded->class_.needs & (AB_NEED_DEFORMATION_GRADIENT | AB_NEED_DENSITY)) &&
@@ -285,7 +287,8 @@ static double modulus(const ab_domain *domain) { return ((const mpm_body *)domai
 #define SAME_IN_ALL                                                                                                                        \
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
-    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .read = mpm_read, .plan = mpm_plan, .keep = mpm_keep
+    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .edges = mpm_edges, .read = mpm_read, .plan = mpm_plan,  \
+    .keep = mpm_keep
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
@@ -395,6 +398,7 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     if ((size_t)body->threads > busy) body->threads = (int)busy;
     if (status == AB_OK) status = mpm_material_start(body, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
+    if (status == AB_OK) status = mpm_edges_create(body, fill, report);
     if (status == AB_OK) status = mpm_outline_create(body, fill, report);
     if (status == AB_OK && wants_birth(body)) {
         body->birth = malloc(2 * fill->count * sizeof *body->birth);

@@ -84,6 +84,13 @@ typedef struct mpm_load {      /* a piece of outline with a traction or a pressu
     double force[2];           /* N, in this step */
 } mpm_load;
 
+typedef struct mpm_reach { /* the nodes of a piece of outline: its weights, gradients at the point under it, places in its tile's patch */
+    double n[MPM_STENCIL], g[MPM_STENCIL][2];
+    size_t node[MPM_STENCIL];
+    int count;
+    const mpm_tile *tile;
+} mpm_reach;
+
 typedef struct mpm_body mpm_body;
 
 typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.c */
@@ -199,12 +206,15 @@ struct mpm_body {
     double wave_speed;    /* largest, m/s */
     bool ask_wave_speed;  /* in this step's stress pass */
     double modulus;       /* P-wave modulus, Pa */
+    double shear_modulus; /* Pa; only with boundary plugins, else 0 */
     double largest_speed; /* m/s */
     double point_mass;    /* kg, largest */
     char limit[128];
 
     mpm_load *loads;
     size_t load_count;
+    struct mpm_edges *edges; /* one per boundary plugin on the body; NULL: none */
+    size_t edges_count;
     double *body_force; /* N: 16 a block, along x, along y; NULL without one */
     size_t body_force_capacity;
     uint32_t *slot; /* by id, block*8 + lane, UINT32_MAX: has left; only with loads or an outline */
@@ -295,6 +305,19 @@ ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);
 void mpm_loads_scatter(mpm_body *, const ab_step *);
 void mpm_loads_work(mpm_body *, const ab_step *);
 void mpm_loads_follow(mpm_body *, const ab_step *); /* with the velocities that strain the points, before they are strained */
+/* Of one piece, of loads and of edges. Pieces in a set, to the end of a list (room for them is there), joined with their neighbours where wanted; false: no memory. */
+bool mpm_load_pieces(const ab_fill *, const ab_where *, bool join, uint32_t spec, mpm_load *list, size_t *count);
+void mpm_load_place(const mpm_body *, const mpm_load *list, mpm_load *); /* now, stretch: with neighbours half-way */
+mpm_reach mpm_load_reach(const mpm_body *, const mpm_load *);            /* with now and stretch as they are */
+void mpm_load_follow(const mpm_body *, const ab_step *, mpm_load *);
+
+/* edges.c: pieces of outline that boundary plugins act on. None: nothing is done */
+ab_status mpm_edges_create(mpm_body *, const ab_fill *, ab_report *);
+ab_status mpm_edges(ab_domain *, size_t boundary, const ab_step *, ab_edge_list *, ab_report *);
+void mpm_edges_follow(mpm_body *, const ab_step *); /* as mpm_loads_follow */
+size_t mpm_edges_bytes(const mpm_body *);
+bool mpm_edges_keep(mpm_body *, struct ab_checkpoint *);
+void mpm_edges_destroy(mpm_body *);
 
 /* body_force.c: all of it nothing where the body has none */
 ab_status mpm_body_force_find(mpm_body *, const ab_step *,

@@ -11,38 +11,36 @@
 #include "mpm/outline.h"
 
 /* Neighbours among the pieces under one pressure; load[s]: 1 + place in the list of piece s. An outline that does not close has none. */
-static bool join_pieces(mpm_body *body, const ab_fill *fill, const uint32_t *load) {
+static bool join_pieces(const ab_fill *fill, const uint32_t *load, mpm_load *list) {
     uint32_t *following = malloc((fill->surface_count + 1) * sizeof *following);
     const ab_status status = following ? mpm_pieces_chain(fill, following) : AB_FAILED;
     for (size_t s = 0; s < fill->surface_count && status == AB_OK; ++s) {
         if (!load[s] || !load[following[s]]) continue;
-        body->loads[load[s] - 1].next = load[following[s]] - 1;
-        body->loads[load[following[s]] - 1].prior = load[s] - 1;
+        list[load[s] - 1].next = load[following[s]] - 1;
+        list[load[following[s]] - 1].prior = load[s] - 1;
     }
     free(following);
     return status != AB_FAILED;
 }
 
-/* One load's pieces of outline, to the end of the list. */
-static bool take_pieces(mpm_body *body, const ab_fill *fill, uint32_t spec) {
+bool mpm_load_pieces(const ab_fill *fill, const ab_where *where, bool join, uint32_t spec, mpm_load *list, size_t *count) {
     uint32_t *load = calloc(fill->surface_count + 1, sizeof *load);
     if (!load) return false;
     for (size_t s = 0; s < fill->surface_count; ++s) {
         const ab_outline_piece *piece = fill->surface + s;
-        if (!ab_where_holds(&body->scene->loads[spec].where, fill, piece)) continue;
+        if (!ab_where_holds(where, fill, piece)) continue;
         const double half = 0.5 * piece->length;
-        body->loads[body->load_count++] =
-            (mpm_load){.id = piece->point,
-                       .spec = spec,
-                       .length = piece->length,
-                       .arm = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
-                       .half = {-half * piece->normal[1], half * piece->normal[0]},
-                       .place = {piece->position[0], piece->position[1]},
-                       .prior = UINT32_MAX,
-                       .next = UINT32_MAX};
-        load[s] = (uint32_t)body->load_count;
+        list[(*count)++] = (mpm_load){.id = piece->point,
+                                      .spec = spec,
+                                      .length = piece->length,
+                                      .arm = {piece->position[0] - fill->x[piece->point], piece->position[1] - fill->y[piece->point]},
+                                      .half = {-half * piece->normal[1], half * piece->normal[0]},
+                                      .place = {piece->position[0], piece->position[1]},
+                                      .prior = UINT32_MAX,
+                                      .next = UINT32_MAX};
+        load[s] = (uint32_t)*count;
     }
-    const bool good = !body->scene->loads[spec].press || join_pieces(body, fill, load);
+    const bool good = !join || join_pieces(fill, load, list);
     free(load);
     return good;
 }
@@ -64,21 +62,14 @@ ab_status mpm_loads_create(mpm_body *body, const ab_fill *fill, ab_report *repor
     body->loads = malloc(count * sizeof *body->loads);
     bool good = body->loads && mpm_points_index(body);
     for (size_t k = 0; k < scene->load_count && good; ++k)
-        if (scene->loads[k].body == body->domain.index) good = take_pieces(body, fill, (uint32_t)k);
+        if (scene->loads[k].body == body->domain.index)
+            good = mpm_load_pieces(fill, &scene->loads[k].where, scene->loads[k].press, (uint32_t)k, body->loads, &body->load_count);
     return good ? AB_OK : ab_report_failure(report, "body '%s': no memory for %zu loaded points", body->domain.spec->name, count);
 }
 
-typedef struct reach {
-    double n[MPM_STENCIL], g[MPM_STENCIL][2];
-    size_t node[MPM_STENCIL];
-    int count;
-    const mpm_tile *tile;
-} reach;
-
-/* The nodes that carry a load: values, gradients at the point under it, and places in its tile's patch. */
-static reach reach_of(const mpm_body *body, const mpm_load *load) {
+mpm_reach mpm_load_reach(const mpm_body *body, const mpm_load *load) {
     const uint32_t slot = body->slot[load->id];
-    reach r = {.count = 0};
+    mpm_reach r = {.count = 0};
     r.tile = body->tiles + mpm_tile_of_block(body, slot / 8);
     mpm_stencils w;
     const double *block = mpm_block(body, slot / 8);
@@ -105,27 +96,31 @@ static void own_place(const mpm_body *body, const mpm_load *load, double middle[
 
 /* The end of a piece (sign 1) or its beginning (-1): half-way between what its point and that of its neighbour say. So pieces under a pressure hang together,
  * and all around a body it has neither sum nor moment, however the points differ. */
-static void end_of(const mpm_body *body, const mpm_load *load, uint32_t neighbour, double sign, double end[2]) {
+static void end_of(const mpm_body *body, const mpm_load *list, const mpm_load *load, uint32_t neighbour, double sign, double end[2]) {
     own_place(body, load, end);
     for (int c = 0; c < 2; ++c) end[c] += sign * load->half[c];
-    if (neighbour == UINT32_MAX || body->slot[body->loads[neighbour].id] == UINT32_MAX) return;
-    const mpm_load *other = body->loads + neighbour;
+    if (neighbour == UINT32_MAX || body->slot[list[neighbour].id] == UINT32_MAX) return;
+    const mpm_load *other = list + neighbour;
     double theirs[2];
     own_place(body, other, theirs);
     for (int c = 0; c < 2; ++c) end[c] = 0.5 * (end[c] + theirs[c] - sign * other->half[c]);
+}
+
+void mpm_load_place(const mpm_body *body, const mpm_load *list, mpm_load *load) {
+    double from[2], to[2];
+    end_of(body, list, load, load->prior, -1.0, from);
+    end_of(body, list, load, load->next, 1.0, to);
+    for (int c = 0; c < 2; ++c) {
+        load->now[c] = 0.5 * (from[c] + to[c]);
+        load->stretch[c] = 0.5 * (to[c] - from[c]);
+    }
 }
 
 static void find_force(const mpm_body *body, double time, mpm_load *load) {
     const ab_load_spec *spec = body->scene->loads + load->spec;
     const double x = load->place[0], y = load->place[1];
     if (spec->press) {
-        double from[2], to[2];
-        end_of(body, load, load->prior, -1.0, from);
-        end_of(body, load, load->next, 1.0, to);
-        for (int c = 0; c < 2; ++c) {
-            load->now[c] = 0.5 * (from[c] + to[c]);
-            load->stretch[c] = 0.5 * (to[c] - from[c]);
-        }
+        mpm_load_place(body, body->loads, load);
         const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
         const double round = body->axisymmetric ? ab_circumference(load->now[0] + body->origin[0]) : 1.0; /* exact for a cone, too */
         load->force[0] = -2.0 * p * load->stretch[1] * round;
@@ -145,7 +140,7 @@ void mpm_loads_scatter(mpm_body *body, const ab_step *step) {
         mpm_load *load = body->loads + k;
         if (body->slot[load->id] == UINT32_MAX) continue;
         find_force(body, step->time + 0.5 * step->dt, load);
-        const reach r = reach_of(body, load);
+        const mpm_reach r = mpm_load_reach(body, load);
         double *patch = body->patches + (size_t)r.tile->patch * mpm_patch_doubles(body);
         for (int i = 0; i < r.count; ++i)
             for (int c = 0; c < 2; ++c) patch[8 * r.node[i] + NODE_FORCE_X + (size_t)c] += r.n[i] * load->force[c];
@@ -156,7 +151,7 @@ void mpm_loads_work(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
         const mpm_load *load = body->loads + k;
         if (body->slot[load->id] == UINT32_MAX) continue;
-        const reach r = reach_of(body, load);
+        const mpm_reach r = mpm_load_reach(body, load);
         for (int i = 0; i < r.count; ++i) {
             const double *own = body->own + (size_t)mpm_dof_of(body, r.tile, (int)r.node[i]) * OWN_RECORD;
             for (int c = 0; c < 2; ++c)
@@ -165,22 +160,26 @@ void mpm_loads_work(mpm_body *body, const ab_step *step) {
     }
 }
 
+void mpm_load_follow(const mpm_body *body, const ab_step *step, mpm_load *load) {
+    const mpm_reach r = mpm_load_reach(body, load);
+    double arm[2] = {load->arm[0], load->arm[1]}, half[2] = {load->half[0], load->half[1]};
+    for (int i = 0; i < r.count; ++i) {
+        const double *own = body->own + (size_t)mpm_dof_of(body, r.tile, (int)r.node[i]) * OWN_RECORD;
+        const double along_arm = step->dt * (r.g[i][0] * load->arm[0] + r.g[i][1] * load->arm[1]);
+        const double along_half = step->dt * (r.g[i][0] * load->half[0] + r.g[i][1] * load->half[1]);
+        for (int c = 0; c < 2; ++c) {
+            arm[c] += along_arm * own[OWN_VELOCITY + c];
+            half[c] += along_half * own[OWN_VELOCITY + c];
+        }
+    }
+    for (int c = 0; c < 2; ++c) load->arm[c] = arm[c], load->half[c] = half[c];
+}
+
 /* Arms stretch and turn as the domains of their points do; domains of fixed size have fixed arms, but under a pressure. */
 void mpm_loads_follow(mpm_body *body, const ab_step *step) {
     for (size_t k = 0; k < body->load_count; ++k) {
         mpm_load *load = body->loads + k;
         if (body->slot[load->id] == UINT32_MAX || !(body->contiguous || body->scene->loads[load->spec].press)) continue;
-        const reach r = reach_of(body, load);
-        double arm[2] = {load->arm[0], load->arm[1]}, half[2] = {load->half[0], load->half[1]};
-        for (int i = 0; i < r.count; ++i) {
-            const double *own = body->own + (size_t)mpm_dof_of(body, r.tile, (int)r.node[i]) * OWN_RECORD;
-            const double along_arm = step->dt * (r.g[i][0] * load->arm[0] + r.g[i][1] * load->arm[1]);
-            const double along_half = step->dt * (r.g[i][0] * load->half[0] + r.g[i][1] * load->half[1]);
-            for (int c = 0; c < 2; ++c) {
-                arm[c] += along_arm * own[OWN_VELOCITY + c];
-                half[c] += along_half * own[OWN_VELOCITY + c];
-            }
-        }
-        for (int c = 0; c < 2; ++c) load->arm[c] = arm[c], load->half[c] = half[c];
+        mpm_load_follow(body, step, load);
     }
 }

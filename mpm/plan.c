@@ -41,7 +41,8 @@ void mpm_plan(const ab_domain *domain, ab_plan_body *p) {
                body->tie_capacity * sizeof *body->ties + body->line_capacity * sizeof *body->lines +
                body->back_capacity * 16 * AB_TILE_NODES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) +
-               (body->domain.spec->has_force ? body->block_capacity * 128 : 0) + mpm_outline_bytes(body->outline) + sizeof *body;
+               (body->domain.spec->has_force ? body->block_capacity * 128 : 0) + mpm_edges_bytes(body) + mpm_outline_bytes(body->outline) +
+               sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
@@ -60,6 +61,7 @@ void mpm_plan(const ab_domain *domain, ab_plan_body *p) {
              : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
              body->load_count ? ", tractions" : "", body->domain.spec->has_force ? ", body force" : "", outline);
+    if (body->edges_count) strncat(p->passes, ", edges of boundaries", sizeof p->passes - strlen(p->passes) - 1);
     if (body->f_bar) strncat(p->passes, ", averages of volume change and mean stress", sizeof p->passes - strlen(p->passes) - 1);
     if (body->order > 1) {
         const size_t used = strlen(p->passes);

@@ -29,6 +29,10 @@ static const ab_param fake_response_params[] = {
     {"shared", "m", "declared by both", NULL, AB_REAL, 0, 2, 0, 0},
 };
 
+static const ab_param fake_boundary_params[] = {
+    {"a", "1", "part of rho c", NULL, AB_REAL, 0, 1, 0, 100},
+};
+
 static const ab_loaded_class fake_classes[] = {
     {.class_ = {.kind = AB_MATERIAL, .spaces = AB_PLANE_STRAIN, .nparam = 5, .nstate = 2, .name = "linear-elastic", .param = fake_elastic_params, .state = fake_elastic_states}},
     {.class_ = {.kind = AB_MATERIAL, .spaces = AB_SPACE_3D, .name = "only-3d"}},
@@ -36,6 +40,7 @@ static const ab_loaded_class fake_classes[] = {
     {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS, .needs = AB_NEED_SURFACE, .name = "faces"}},
     {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_POINTS | AB_GIVE_IMPULSE, .nparam = 2, .name = "both", .param = fake_response_params}},
     {.class_ = {.kind = AB_CONTACT, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_IMPULSE, .nparam = 2, .name = "coulomb", .param = fake_response_params}},
+    {.class_ = {.kind = AB_BOUNDARY, .spaces = AB_PLANE_STRAIN, .gives = AB_GIVE_TRACTION | AB_GIVE_DAMPING, .nparam = 1, .name = "dashpots", .param = fake_boundary_params}},
 };
 
 const ab_loaded_class *ab_registry_find(ab_registry *registry, uint32_t kind, const char *name, ab_mark mark, ab_report *report) {

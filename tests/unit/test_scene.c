@@ -78,7 +78,8 @@ static const mistake mistakes[] = {
     {"multi-velocity", "multi-velocty", "there is no plugin 'multi-velocty'; did you mean 'multi-velocity'?"},
     {"multi-velocity", "coulomb", "gives impulses but finds no contact points"},
     {"multi-velocity", "multi-velocity\n    response: multi-velocity", "finds contact points but gives no impulses"},
-    {"    friction: mu", "    friction: mu\n  - {bodies: [plane, block], algorithm: both}", "bodies 'plane' and 'block' meet already in contact[0] (line 25); one entry a pair"},
+    {"    friction: mu", "    friction: mu\n  - {bodies: [plane, block], algorithm: both}",
+     "bodies 'plane' and 'block' meet already in contact[0] (line 25); one entry a pair"},
     {"material: rubber", "material: ruber", "bodies.plane.material: there is no material 'ruber'; did you mean 'rubber'?"},
     {"model: linear-elastic", "model: linear_elastik", "did you mean 'linear-elastic'?"},
     {"model: linear-elastic", "model: only-3d", "does not work in plane strain"},
@@ -105,10 +106,12 @@ static const mistake mistakes[] = {
     {"to: [8, 4]", "to: [8, -4]", "not beyond grid.from"},
     {"to: [8, 4]", "to: [8]", "grid.to needs two numbers [x, y], not 1"},
     {"to: [8, 4]\n  cell: 0.5\n  sides: {", "to: [8, 4.1]\n  cell: 0.5\n  sides: {top: roller, ", "set grid.to to 4 or 4.5 along y"},
-    {"[[1, 1], [2, 2]]", "[[1, 1], [2, 9]]", "body 'block' lies partly outside the grid: it reaches from [1, 1] to [2, 9] m, the grid from [0, 0] to [8, 4] m"},
+    {"[[1, 1], [2, 2]]", "[[1, 1], [2, 9]]",
+     "body 'block' lies partly outside the grid: it reaches from [1, 1] to [2, 9] m, the grid from [0, 0] to [8, 4] m"},
     {"[[1, 1], [2, 2]]", "[[11, 1], [12, 2]]", "body 'block' lies wholly outside the grid"},
     {"[[1, 1], [2, 2]]", "[[2, 1], [1, 2]]", "the second corner must lie above and to the right"},
-    {"{box: [[1, 1], [2, 2]]}", "{disc: {center: [2, 2], radius: 1e-200}}", "disc: the radius is 1e-200 m, too small to compute with, 2 m from the origin; write 2e-12 m or more"},
+    {"{box: [[1, 1], [2, 2]]}", "{disc: {center: [2, 2], radius: 1e-200}}",
+     "disc: the radius is 1e-200 m, too small to compute with, 2 m from the origin; write 2e-12 m or more"},
     {"{box: [[1, 1], [2, 2]]}", "{disc: {center: [0, 0], radius: 1e-200}}", "0 m from the origin; write 1e-30 m or more"},
     {"{box: [[1, 1], [2, 2]]}", "{disc: {center: [2, 2], radius: 1e-13}}", "disc: the radius is 1e-13 m, too small"},
     {"{box: [[1, 1], [2, 2]]}", "{box: [[0, 0], [1e-40, 1]]}", "the shorter side is 1e-40 m, too small"},
@@ -121,36 +124,52 @@ static const mistake mistakes[] = {
     {"{box: [[1, 1], [2, 2]]}", "{}", "one of box, disc, ring, polygon, union and mesh"},
     {"{box: [[1, 1], [2, 2]]}", "{mesh: a.msh}", "shape.mesh must be a mapping"},
     {"{box: [[1, 1], [2, 2]]}", "{union: [{mesh: {box: [[1, 1], [2, 2]], elements: [2, 2]}}]}", "a mesh stands alone"},
-    {"{box: [[1, 1], [2, 2]]}", "{mesh: {box: [[1, 1], [2, 2]], elements: [2, 2], hourglass: 1, type: q4r}}", "mesh.hourglass belongs to finite elements"},
+    {"{box: [[1, 1], [2, 2]]}", "{mesh: {box: [[1, 1], [2, 2]], elements: [2, 2], hourglass: 1, type: q4r}}",
+     "mesh.hourglass belongs to finite elements"},
     {"{rule: gauss, per_cell: 9}", "{rule: gauss, points: 500}", "fill.points belongs to rule cvt; with rule gauss write per_cell"},
     {"{rule: gauss, per_cell: 9}", "{rule: regular, seed: 2}", "fill.seed belongs to rule cvt"},
     {"{rule: gauss, per_cell: 9}", "{rule: cvt, points: 0}", "fill.points"},
     {"{rule: gauss, per_cell: 9}", "{rule: cvt, points: 500, per_cell: 9}", "has both points and per_cell"},
     {"{rule: gauss, per_cell: 9}", "{rule: cvt, tolerance: 2}", "fill.tolerance"},
     {"{box: [[1, 1], [2, 2]]}", "{box: [[1, 1], [2, 2]], holes: [[[1, 1], [2, 1], [2, 2]]]}", "holes stand beside a polygon"},
-    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[2, 1.5], [2.5, 1.5], [2.5, 2]]}", "needs a list of three corners or more"},
-    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[[2, 1.5], [3.5, 1.5], [2.5, 2]]]}", "holes[0]: its piece from corner 0 meets the outline"},
-    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[[5, 1.5], [5.5, 1.5], [5.5, 2]]]}", "holes[0] lies outside of the polygon"},
+    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[2, 1.5], [2.5, 1.5], [2.5, 2]]}",
+     "needs a list of three corners or more"},
+    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[[2, 1.5], [3.5, 1.5], [2.5, 2]]]}",
+     "holes[0]: its piece from corner 0 meets the outline"},
+    {"{box: [[1, 1], [2, 2]]}", "{polygon: [[1, 1], [3, 1], [3, 3]], holes: [[[5, 1.5], [5.5, 1.5], [5.5, 2]]]}",
+     "holes[0] lies outside of the polygon"},
     {"{rule: gauss, per_cell: 9}", "{per_cell: 0}", "per_cell is 0 but must be at least 1"},
     {"    method: material-points", "    method: finite-element", "unknown word 'finite-element'; did you mean 'finite-elements'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    basis: bspline4", "unknown word 'bspline4'; did you mean 'bspline2'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: apik", "unknown word 'apik'; did you mean 'apic'?"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 0}", "bodies.block.transfer.xpic is 0 but must be at least 1 and at most 20"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {fmpm: -1}", "bodies.block.transfer.fmpm is -1 but must be at least 1 and at most 20"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 21}", "bodies.block.transfer.xpic is 21 but must be at least 1 and at most 20"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 0}",
+     "bodies.block.transfer.xpic is 0 but must be at least 1 and at most 20"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {fmpm: -1}",
+     "bodies.block.transfer.fmpm is -1 but must be at least 1 and at most 20"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 21}",
+     "bodies.block.transfer.xpic is 21 but must be at least 1 and at most 20"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 2.5}", "2.5 is not a whole number"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpik: 2}", "did you mean 'xpic'?"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: xpic", "'xpic' needs its order; write {xpic: 2}"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {apic: 1}", "unknown key 'apic'"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 2, fmpm: 2}", "bodies.block.transfer needs one of flip, xpic and fmpm, not 2 of them"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: tpic\n    update: usl", "transfer tpic with update usl on basis gimp is unstable"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {xpic: 2, fmpm: 2}",
+     "bodies.block.transfer needs one of flip, xpic and fmpm, not 2 of them"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    transfer: tpic\n    update: usl",
+     "transfer tpic with update usl on basis gimp is unstable"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {}", "bodies.block.transfer needs one of flip, xpic and fmpm, not 0 of them"},
     {"    fill: {rule: gauss, per_cell: 9}", "    transfer: {flip: 1.1}", "flip is 1.1 but must be at least 0 and at most 1"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    mesh: {}", "bodies.block.mesh belongs to method finite-elements and rigid; leave it out of a body of method material-points"},
-    {"    fill: {rule: gauss, per_cell: 9}", "    fix: []", "bodies.block.fix belongs to method finite-elements; leave it out of a body of method material-points"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    mesh: {}",
+     "bodies.block.mesh belongs to method finite-elements and rigid; leave it out of a body of method material-points"},
+    {"    fill: {rule: gauss, per_cell: 9}", "    fix: []",
+     "bodies.block.fix belongs to method finite-elements; leave it out of a body of method material-points"},
     {"title: two blocks", "space: 3d", "space: '3d' is not in this version yet; there is: plane-strain, axisymmetric"},
     {"title: two blocks", "stages: []", "stages is not in this version yet"},
-    {"title: two blocks", "boundaries: []", "boundaries is not in this version yet"},
+    {"title: two blocks", "boundaries: [{on: nobody, where: {side: top}, boundary: dashpots}]",
+     "boundaries[0].on: there is no body 'nobody'"},
+    {"title: two blocks", "boundaries: [{on: block, where: {side: top}, boundary: dashpot}]",
+     "there is no plugin 'dashpot'; did you mean 'dashpots'?"},
+    {"title: two blocks", "boundaries: [{on: block, where: {side: top}, boundary: dashpots, c: 1}]", "unknown key 'c' in boundaries[0]"},
+    {"title: two blocks", "boundaries: [{on: block, boundary: dashpots}]", "key 'where' is missing in boundaries[0]"},
     {"title: two blocks", "checkpoint: {}", "checkpoint: write every (s), steps or wall (minutes)"},
     {"title: two blocks", "checkpoint: {steps: 0}", "checkpoint.steps is 0"},
     {"title: two blocks", "checkpoint: {every: -1}", "checkpoint.every is -1 but must be greater than 0 s"},
@@ -194,7 +213,8 @@ static const mistake mistakes[] = {
     {"title: two blocks", "output: {every: 0.1, fields: [stress, stress]}", "field 'stress' stands twice"},
     {"title: two blocks", "history: {every: 0}", "history.every is 0 but must be at least 1"},
     {"title: two blocks", "damping: {local: 1}", "damping.local is 1 but must be at least 0 and less than 1"},
-    {"title: two blocks", "loads: [{body: block, where: {side: tpo}, traction: [0, 0]}]", "loads[0].where.side: unknown word 'tpo'; did you mean 'top'?"},
+    {"title: two blocks", "loads: [{body: block, where: {side: tpo}, traction: [0, 0]}]",
+     "loads[0].where.side: unknown word 'tpo'; did you mean 'top'?"},
     {"title: two blocks", "loads: [{body: block, where: {}, traction: [0, 0]}]", "says nothing"},
     {"title: two blocks", "loads: [{body: block, where: {x: [1, 0]}, traction: [0, 0]}]", "the range goes from 1 down to 0"},
     {"title: two blocks", "title: {a: b}", "title must be a text, not a mapping"},
@@ -213,7 +233,8 @@ static void test_each_mistake_is_said_at_its_place_with_its_remedy(void **state)
 
 static void test_all_mistakes_are_said_at_once_in_order_of_place(void **state) {
     (void)state;
-    outcome o = read_changed("title: two blocks\nconstants: {mu: 0.25, E0: 20 MPa, twice: 2*mu}\n", "tittle: a\nconstants: {mu: 0.25, E0: 20 MPq, t: 1}\n", NULL, 0);
+    outcome o = read_changed("title: two blocks\nconstants: {mu: 0.25, E0: 20 MPa, twice: 2*mu}\n",
+                             "tittle: a\nconstants: {mu: 0.25, E0: 20 MPq, t: 1}\n", NULL, 0);
     assert_int_equal(o.status, AB_BAD_INPUT);
     assert_int_equal(ab_report_errors(o.report), 3);
     assert_non_null(strstr(ab_report_text(o.report, 0), ":2:1: error: unknown key 'tittle'"));
@@ -224,7 +245,8 @@ static void test_all_mistakes_are_said_at_once_in_order_of_place(void **state) {
 
 static void test_shapes_and_words_in_their_other_forms(void **state) {
     (void)state;
-    outcome o = read_changed("    fill: {rule: gauss, per_cell: 9}\n", "    basis: {gimp: fixed}\n    transfer: {flip: 0.9}\n    update: usf\n    gravity: false\n", NULL, 0);
+    outcome o = read_changed("    fill: {rule: gauss, per_cell: 9}\n",
+                             "    basis: {gimp: fixed}\n    transfer: {flip: 0.9}\n    update: usf\n    gravity: false\n", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_false(o.scene->bodies[1].contiguous);
     assert_float_equal(o.scene->bodies[1].flip, 0.9, 0);
@@ -235,8 +257,8 @@ static void test_shapes_and_words_in_their_other_forms(void **state) {
         ab_transfer transfer;
         double flip;
         int order;
-    } transfers[] = {{"flip", AB_TRANSFER_FLIP, 1, 0}, {"pic", AB_TRANSFER_FLIP, 0, 0}, {"apic", AB_TRANSFER_APIC, 0, 0}, {"tpic", AB_TRANSFER_TPIC, 0, 0},
-                     {"{xpic: 3}", AB_TRANSFER_XPIC, 1, 3}, {"{fmpm: 20}", AB_TRANSFER_FMPM, 1, 20}};
+    } transfers[] = {{"flip", AB_TRANSFER_FLIP, 1, 0}, {"pic", AB_TRANSFER_FLIP, 0, 0},       {"apic", AB_TRANSFER_APIC, 0, 0},
+                     {"tpic", AB_TRANSFER_TPIC, 0, 0}, {"{xpic: 3}", AB_TRANSFER_XPIC, 1, 3}, {"{fmpm: 20}", AB_TRANSFER_FMPM, 1, 20}};
     for (size_t k = 0; k < sizeof transfers / sizeof *transfers; k++) {
         char text[80];
         snprintf(text, sizeof text, "    transfer: %s\n", transfers[k].text);
@@ -247,7 +269,9 @@ static void test_shapes_and_words_in_their_other_forms(void **state) {
         if (transfers[k].order) assert_int_equal(o.scene->bodies[1].order, transfers[k].order);
         forget(&o);
     }
-    o = read_changed("{box: [[1, 1], [2, 2]]}", "{union: [{polygon: [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]}, {ring: {center: [4, 2], radius: 50 cm, inner: 0.2}}]}", NULL, 0);
+    o = read_changed("{box: [[1, 1], [2, 2]]}",
+                     "{union: [{polygon: [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]}, {ring: {center: [4, 2], radius: 50 cm, inner: 0.2}}]}",
+                     NULL, 0);
     assert_int_equal(o.status, AB_OK);
     const ab_shape_spec *polygon = &o.scene->bodies[1].shape.members[0];
     assert_int_equal(polygon->count, 4);
@@ -284,16 +308,19 @@ static void test_shapes_and_words_in_their_other_forms(void **state) {
 
 static void test_units_of_expects_follow_the_norm(void **state) {
     (void)state;
-    outcome o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01", "monitor: push, norm: impulse, reference: 2 kN ms, scale: 1 N s, tolerance: 0.01", NULL, 0);
+    outcome o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01",
+                             "monitor: push, norm: impulse, reference: 2 kN ms, scale: 1 N s, tolerance: 0.01", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_float_equal(o.scene->expects[0].reference.value, 2, 1e-12);
     forget(&o);
-    o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01", "monitor: x, norm: duration, level: 15 cm, reference: 2 ms, tolerance: 0.01", NULL, 0);
+    o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01",
+                     "monitor: x, norm: duration, level: 15 cm, reference: 2 ms, tolerance: 0.01", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_float_equal(o.scene->expects[0].reference.value, 0.002, 1e-15);
     assert_float_equal(o.scene->expects[0].level, 0.15, 1e-15);
     forget(&o);
-    o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01", "column: block.kinetic, norm: max, reference: \"2*t kJ\", tolerance: 0.01", NULL, 0);
+    o = read_changed("monitor: x, reference: \"1.5 + 2*t\", tolerance: 0.01",
+                     "column: block.kinetic, norm: max, reference: \"2*t kJ\", tolerance: 0.01", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_string_equal(o.scene->expects[0].column, "block.kinetic");
     assert_float_equal(ab_number_at(&o.scene->expects[0].reference, 2, 0, 0, 0), 4000, 1e-9);
@@ -302,8 +329,9 @@ static void test_units_of_expects_follow_the_norm(void **state) {
 
 static void test_doubtful_choices_are_warned_of(void **state) {
     (void)state;
-    outcome o = read_changed("contact:\n  - bodies: [block, plane]\n    algorithm: multi-velocity\n    friction: mu\nmonitors:\n  - {name: x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}",
-                     "monitors:\n  - {name: x, body: block, value: position.x}", NULL, 0);
+    outcome o = read_changed("contact:\n  - bodies: [block, plane]\n    algorithm: multi-velocity\n    friction: mu\nmonitors:\n  - {name: "
+                             "x, body: block, value: position.x}\n  - {name: push, contact: 0, value: force.y}",
+                             "monitors:\n  - {name: x, body: block, value: position.x}", NULL, 0);
     assert_int_equal(o.status, AB_OK);
     assert_true(said(&o, "warning: bodies 'plane' and 'block' touch or overlap"));
     forget(&o);

@@ -1,0 +1,177 @@
+/* edges.c: pieces of a body's outline that boundary plugins act on: where they are, which nodes they hang on, how they follow the material.
+ *
+ * An edge hangs on the nodes that a load there pulls at (mpm_kernel.carry), and its velocity is what those nodes move with, by the same weights. A traction then does
+ * the same work at the nodes as at the edge, and stands where the internal force of a stress at the face stands: dashpots at the points themselves would leave a
+ * layer beyond them that throws back a part (w d/c) of a wave of frequency w, d their distance from the face. A linear basis, whose loads act at its points, has its edges on
+ * the hats of the points' cells for that reason. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/checkpoint.h"
+#include "mpm/body.h"
+
+enum { ROWS = 8 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds */
+
+struct mpm_edges {
+    size_t boundary; /* of the scene */
+    mpm_load *pieces;
+    size_t count, ld, room;
+    double *rows; /* ROWS x ld */
+    size_t *start;
+    uint32_t *dof; /* room of them */
+    double *weight;
+};
+
+static ab_status no_memory(const mpm_body *body, size_t count, ab_report *report) {
+    return ab_report_failure(report, "body '%s': no memory for %zu edges under boundaries", body->domain.spec->name, count);
+}
+
+static ab_status create_one(mpm_body *body, const ab_fill *fill, size_t boundary, ab_report *report) {
+    const ab_boundary_spec *spec = body->scene->boundaries + boundary;
+    size_t count = 0;
+    for (size_t s = 0; s < fill->surface_count; ++s) count += ab_where_holds(&spec->where, fill, fill->surface + s);
+    if (count == 0)
+        return ab_report_error(
+            report, spec->mark,
+            "boundaries[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", boundary,
+            body->domain.spec->name);
+    struct mpm_edges *e = body->edges + body->edges_count++;
+    *e = (struct mpm_edges){.boundary = boundary, .ld = (count + 7) / 8 * 8};
+    e->room = count * (MPM_STENCIL + MPM_LIGHT_MORE);
+    e->pieces = malloc(count * sizeof *e->pieces);
+    e->rows = calloc(ROWS * e->ld, sizeof *e->rows);
+    e->start = calloc(count + 1, sizeof *e->start);
+    e->dof = malloc(e->room * sizeof *e->dof);
+    e->weight = malloc(e->room * sizeof *e->weight);
+    if (!e->pieces || !e->rows || !e->start || !e->dof || !e->weight || !mpm_points_index(body) ||
+        !mpm_load_pieces(fill, &spec->where, true, (uint32_t)boundary, e->pieces, &e->count))
+        return no_memory(body, count, report);
+    const double density = body->material->density;
+    for (size_t k = 0; k < e->ld; ++k) {
+        e->rows[6 * e->ld + k] = sqrt(body->modulus / density);
+        e->rows[7 * e->ld + k] = sqrt(body->shear_modulus / density);
+    }
+    return AB_OK;
+}
+
+ab_status mpm_edges_create(mpm_body *body, const ab_fill *fill, ab_report *report) {
+    const ab_scene *scene = body->scene;
+    size_t count = 0;
+    for (size_t k = 0; k < scene->boundary_count; ++k) count += scene->boundaries[k].body == body->domain.index;
+    if (count == 0) return AB_OK;
+    body->edges = calloc(count, sizeof *body->edges);
+    if (!body->edges) return no_memory(body, count, report);
+    for (size_t k = 0; k < scene->boundary_count; ++k)
+        if (scene->boundaries[k].body == body->domain.index) AB_TRY(create_one(body, fill, k, report));
+    return AB_OK;
+}
+
+/* Hats of the cell of the point under an edge where the edge is, or at the nearest place of the cell. */
+static void hats(const mpm_body *body, const mpm_load *piece, mpm_reach *r) {
+    const uint32_t slot = body->slot[piece->id];
+    int32_t node[2][8];
+    body->kernel->first(body, mpm_block(body, slot / 8), ROW_X, node);
+    double s[2];
+    for (int c = 0; c < 2; ++c) s[c] = fmin(fmax(piece->now[c] * body->inverse_h - node[c][slot % 8], 0.0), 1.0);
+    for (int k = 0; k < 4; ++k) r->n[k] = (k % 2 ? s[0] : 1.0 - s[0]) * (k / 2 ? s[1] : 1.0 - s[1]);
+}
+
+/* Dofs of an edge and their weights, which add up to 1. */
+static size_t stencil_of(const mpm_body *body, const mpm_load *piece, uint32_t *dof, double *weight) {
+    mpm_reach r = mpm_load_reach(body, piece);
+    if (!body->kernel->carry) hats(body, piece, &r);
+    size_t count = 0;
+    double sum = 0.0;
+    for (int i = 0; i < r.count; ++i) {
+        const uint32_t k = mpm_dof_of(body, r.tile, (int)r.node[i]);
+        if (!(r.n[i] > 0.0) || !(body->own[(size_t)k * OWN_RECORD + OWN_MASS] > 0.0)) continue;
+        dof[count] = k;
+        weight[count++] = r.n[i];
+        sum += r.n[i];
+    }
+    for (size_t i = 0; i < count; ++i) weight[i] /= sum;
+    return mpm_light_expand(body, dof, weight, count);
+}
+
+ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_edge_list *list, ab_report *report) {
+    (void)step, (void)report;
+    mpm_body *body = (mpm_body *)domain;
+    struct mpm_edges *e = body->edges;
+    while (e->boundary != boundary) ++e;
+    const size_t ld = e->ld;
+    double *x = e->rows, *normal = x + 2 * ld, *area = x + 4 * ld, *density = x + 5 * ld;
+    for (size_t k = 0; k < e->count; ++k) {
+        mpm_load *piece = e->pieces + k;
+        const size_t at = e->start[k];
+        e->start[k + 1] = at;
+        const uint32_t slot = body->slot[piece->id];
+        area[k] = 0.0;
+        if (slot == UINT32_MAX) continue; /* gone; what is known of it stays */
+        mpm_load_place(body, e->pieces, piece);
+        const double half = hypot(piece->stretch[0], piece->stretch[1]), *point = mpm_block(body, slot / 8) + slot % 8;
+        for (size_t c = 0; c < 2; ++c) x[c * ld + k] = piece->now[c];
+        density[k] = point[8 * ROW_MASS] / point[8 * ROW_VOLUME];
+        if (!(half > 0.0)) continue;
+        normal[k] = piece->stretch[1] / half;
+        normal[ld + k] = -piece->stretch[0] / half;
+        area[k] = 2.0 * half * (body->axisymmetric ? ab_circumference(piece->now[0] + body->origin[0]) : 1.0);
+        e->start[k + 1] = at + stencil_of(body, piece, e->dof + at, e->weight + at);
+        if (e->start[k + 1] == at) area[k] = 0.0;
+    }
+    *list = (ab_edge_list){.count = e->count,
+                           .ld = ld,
+                           .position = x,
+                           .normal = normal,
+                           .area = area,
+                           .density = density,
+                           .p_wave_speed = x + 6 * ld,
+                           .s_wave_speed = x + 7 * ld,
+                           .start = e->start,
+                           .dof = e->dof,
+                           .weight = e->weight};
+    return AB_OK;
+}
+
+void mpm_edges_follow(mpm_body *body, const ab_step *step) {
+    for (size_t n = 0; n < body->edges_count; ++n)
+        for (size_t k = 0; k < body->edges[n].count; ++k)
+            if (body->slot[body->edges[n].pieces[k].id] != UINT32_MAX) mpm_load_follow(body, step, body->edges[n].pieces + k);
+}
+
+size_t mpm_edges_bytes(const mpm_body *body) {
+    size_t bytes = 0;
+    for (size_t n = 0; n < body->edges_count; ++n) {
+        const struct mpm_edges *e = body->edges + n;
+        bytes += sizeof *e + e->count * (sizeof *e->pieces + sizeof *e->start) + ROWS * e->ld * sizeof *e->rows +
+                 e->room * (sizeof *e->dof + sizeof *e->weight);
+    }
+    return bytes;
+}
+
+/* Arms and halves, as of loads. */
+bool mpm_edges_keep(mpm_body *body, ab_checkpoint *c) {
+    bool good = true;
+    for (size_t n = 0; good && n < body->edges_count; ++n) {
+        struct mpm_edges *e = body->edges + n;
+        double *shape = malloc(4 * e->count * sizeof *shape);
+        if (!shape) return ab_checkpoint_refuse(c, "no memory for %zu edges", e->count);
+        for (size_t k = 0; k < e->count; ++k)
+            memcpy(shape + 4 * k, e->pieces[k].arm, 2 * sizeof *shape), memcpy(shape + 4 * k + 2, e->pieces[k].half, 2 * sizeof *shape);
+        ab_checkpoint_enter(c, "edges_%zu", n);
+        good = ab_keep_doubles(c, "pieces", shape, 4 * e->count);
+        ab_checkpoint_leave(c);
+        for (size_t k = 0; good && k < e->count; ++k)
+            memcpy(e->pieces[k].arm, shape + 4 * k, 2 * sizeof *shape), memcpy(e->pieces[k].half, shape + 4 * k + 2, 2 * sizeof *shape);
+        free(shape);
+    }
+    return good;
+}
+
+void mpm_edges_destroy(mpm_body *body) {
+    for (size_t n = 0; n < body->edges_count; ++n) {
+        struct mpm_edges *e = body->edges + n;
+        free(e->pieces), free(e->rows), free(e->start), free(e->dof), free(e->weight);
+    }
+    free(body->edges);
+}
