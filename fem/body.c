@@ -215,6 +215,7 @@ static const ab_domain_ops OPS = {.method = "finite-elements",
                                   .surface_points = fem_surface_points,
                                   .modulus = modulus,
                                   .reaction = reaction,
+                                  .edges = fem_edges,
                                   .cells = fem_cells,
                                   .count = fem_count,
                                   .fields = fem_fields,
@@ -349,6 +350,7 @@ static ab_status make(fem_body *body, ab_report *report) {
     AB_TRY(fem_faces_create(body->mesh, spec->name, &faces, report));
     ab_status status = fem_loads_create(body, faces, report);
     if (status == AB_OK) status = fem_held_create(body, faces, report);
+    if (status == AB_OK) status = fem_edges_create(body, faces, report);
     if (status != AB_OK) {
         fem_faces_destroy(faces);
         return status;

@@ -126,7 +126,9 @@ typedef struct fem_body {
     size_t load_count, load_capacity;
     fem_held *held;
     size_t held_count;
-    double *given;      /* m/s: two per entry of fix, in this step */
+    double *given;           /* m/s: two per entry of fix, in this step */
+    struct fem_edges *edges; /* one per boundary of the scene that acts on the body */
+    size_t edges_count;
     double *body_force; /* N: pairs, in this step; NULL without one */
 
     ab_energy energy; /* totals so far */
@@ -192,6 +194,14 @@ int fem_batch_call(fem_batch *, const fem_body *, size_t count);
 void fem_batch_settle(const fem_batch *, const fem_body *, size_t block, fem_block *, size_t at, fem_sums *);
 
 /* loads.c */
+enum { FEM_FACE_PLACES = 3 }; /* of Gauss on a face, -1 .. 1: exact for a parabola of traction or pressure on a straight face */
+extern const double FEM_FACE_PLACE[FEM_FACE_PLACES], FEM_FACE_WEIGHT[FEM_FACE_PLACES];
+typedef struct fem_face_point {
+    double n[3];             /* basis functions of the first, last and middle node */
+    double place[2], run[2]; /* m: where it is, and its derivative from -1 (first) to 1 (last) */
+} fem_face_point;
+/* The place s of a face; pairs: of nodes; node: first, last, middle (FEM_NONE: straight). */
+fem_face_point fem_face_point_on(const double *pairs, const uint32_t node[3], double s);
 ab_status fem_loads_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_held_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_loads_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
@@ -201,6 +211,10 @@ ab_status fem_body_force_add(fem_body *, const ab_step *, ab_report *); /* to fo
 void fem_body_force_work(fem_body *, const ab_step *);                  /* energy.external */
 ab_status fem_held_move(fem_body *, double time, ab_report *);          /* their velocities at a time, to velocity */
 void fem_held_work(fem_body *, const ab_step *);                        /* force and work of the supports */
+
+/* boundary.c: the outer faces under boundary plugins; nothing where the body has none */
+ab_status fem_edges_create(fem_body *, const fem_faces *, ab_report *);
+ab_status fem_edges(ab_domain *, size_t boundary, const ab_step *, ab_edge_list *, ab_report *); /* see core/domain.h */
 
 /* fields.c */
 ab_status fem_fields_create(fem_body *, ab_report *);

@@ -9,20 +9,15 @@
 
 /* ---- loads --------------------------------------------------------------------------------------------------------------- */
 
-enum { PLACES = 3 }; /* of Gauss on a face: exact for a parabola of traction or pressure on a straight face */
-static const double PLACE[PLACES] = {-0.7745966692414834, 0.0, 0.7745966692414834}, WEIGHT[PLACES] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+const double FEM_FACE_PLACE[FEM_FACE_PLACES] = {-0.7745966692414834, 0.0, 0.7745966692414834};
+const double FEM_FACE_WEIGHT[FEM_FACE_PLACES] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
 
-typedef struct face_point {
-    double n[3];             /* basis functions of the first, last and middle node */
-    double place[2], run[2]; /* m: where it is, and its derivative from -1 (first) to 1 (last) */
-} face_point;
-
-static face_point point_on(const double *pairs, const uint32_t node[3], double s) {
+fem_face_point fem_face_point_on(const double *pairs, const uint32_t node[3], double s) {
     const bool bent = node[2] != FEM_NONE;
-    face_point p = {.n = {0.5 * (1.0 - s), 0.5 * (1.0 + s), 0.0}};
+    fem_face_point p = {.n = {0.5 * (1.0 - s), 0.5 * (1.0 + s), 0.0}};
     double d[3] = {-0.5, 0.5, 0.0};
     if (bent) {
-        p = (face_point){.n = {0.5 * s * (s - 1.0), 0.5 * s * (s + 1.0), 1.0 - s * s}};
+        p = (fem_face_point){.n = {0.5 * s * (s - 1.0), 0.5 * s * (s + 1.0), 1.0 - s * s}};
         d[0] = s - 0.5, d[1] = s + 0.5, d[2] = -2.0 * s;
     }
     for (int k = 0; k < (bent ? 3 : 2); ++k)
@@ -36,9 +31,9 @@ static face_point point_on(const double *pairs, const uint32_t node[3], double s
 /* Integrals of the basis functions along a face as it is drawn, m (of rings over the face, m2); the two of a linear one are the same to the last bit. */
 static void face_shares(const double *pairs, const uint32_t node[3], bool rings, double share[3]) {
     share[0] = share[1] = share[2] = 0.0;
-    for (int q = 0; q < PLACES; ++q) {
-        const face_point p = point_on(pairs, node, PLACE[q]);
-        const double length = WEIGHT[q] * hypot(p.run[0], p.run[1]) * (rings ? ab_circumference(p.place[0]) : 1.0);
+    for (int q = 0; q < FEM_FACE_PLACES; ++q) {
+        const fem_face_point p = fem_face_point_on(pairs, node, FEM_FACE_PLACE[q]);
+        const double length = FEM_FACE_WEIGHT[q] * hypot(p.run[0], p.run[1]) * (rings ? ab_circumference(p.place[0]) : 1.0);
         for (int k = 0; k < 3; ++k) share[k] += p.n[k] * length;
     }
     if (node[2] == FEM_NONE && !rings) share[0] = share[1] = 0.5 * (share[0] + share[1]);
@@ -118,12 +113,12 @@ ab_status fem_loads_create(fem_body *body, const fem_faces *faces, ab_report *re
 /* A pressure, or a traction that depends on the place: force = integral of N (-p n or t) along the face. */
 static ab_status integrate(const fem_body *body, const ab_load_spec *spec, double time, fem_load *load, ab_report *report) {
     memset(load->force, 0, sizeof load->force);
-    for (int q = 0; q < PLACES; ++q) {
-        const face_point start = point_on(body->mesh->x, load->node, PLACE[q]);
+    for (int q = 0; q < FEM_FACE_PLACES; ++q) {
+        const fem_face_point start = fem_face_point_on(body->mesh->x, load->node, FEM_FACE_PLACE[q]);
         const double x = start.place[0], y = start.place[1];
         double per_run[2]; /* N: force along a unit of -1 .. 1 */
         if (spec->press) {
-            const face_point now = point_on(body->x, load->node, PLACE[q]);
+            const fem_face_point now = fem_face_point_on(body->x, load->node, FEM_FACE_PLACE[q]);
             const double p = ab_number_at(&spec->pressure, time, x, y, 0.0);
             AB_TRY(ab_number_finite(&spec->pressure, p, time, start.place, report, "loads[%u].pressure", load->spec));
             const double round = body->element->axisymmetric ? ab_circumference(now.place[0]) : 1.0;
@@ -136,7 +131,7 @@ static ab_status integrate(const fem_body *body, const ab_load_spec *spec, doubl
             }
         }
         for (int k = 0; k < 3; ++k)
-            for (int c = 0; c < 2; ++c) load->force[k][c] += WEIGHT[q] * start.n[k] * per_run[c];
+            for (int c = 0; c < 2; ++c) load->force[k][c] += FEM_FACE_WEIGHT[q] * start.n[k] * per_run[c];
     }
     return AB_OK;
 }
