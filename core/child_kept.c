@@ -9,6 +9,7 @@
 #include "core/child_runs.h"
 #include "core/document.h"
 #include "core/files.h"
+#include "core/schema.h"
 
 static uint64_t hash(uint64_t h, const void *bytes, size_t count) { /* FNV-1a */
     const unsigned char *c = bytes;
@@ -82,16 +83,19 @@ static uint64_t hash_scene(uint64_t h, const char *path) {
     return h;
 }
 
+static uint64_t hash_beside(uint64_t h, const char *scene, const char *file) {
+    const char *slash = strrchr(scene, '/');
+    char path[4096];
+    snprintf(path, sizeof path, "%.*s%s", file[0] == '/' || slash == NULL ? 0 : (int)(slash - scene) + 1, scene, file);
+    return hash_file(h, path);
+}
+
 /* Threads change a run's cost. */
 void ab_child_fingerprint(ab_child_runs *runs, const ab_scene *scene, ab_registry *registry) {
     uint64_t h = hash_scene(HASH_START, runs->scene);
-    for (size_t b = 0; b < scene->body_count; b++) {
-        const char *file = scene->bodies[b].mesh.file, *slash = strrchr(runs->scene, '/');
-        if (file == NULL) continue;
-        char path[4096];
-        snprintf(path, sizeof path, "%.*s%s", file[0] == '/' || slash == NULL ? 0 : (int)(slash - runs->scene) + 1, runs->scene, file);
-        h = hash_file(h, path);
-    }
+    for (size_t b = 0; b < scene->body_count; b++)
+        if (scene->bodies[b].mesh.file != NULL) h = hash_beside(h, runs->scene, scene->bodies[b].mesh.file);
+    for (const ab_file_read *file = scene->files; file != NULL; file = file->next) h = hash_beside(h, runs->scene, file->name);
     for (size_t i = 0; i < runs->override_count; i++) h = hash_text(hash_text(h, runs->overrides[i].path), runs->overrides[i].value);
     h = hash_file(h, "/proc/self/exe");
     ab_report *refused = ab_report_create(); /* a plugin that no run asks for may be broken */

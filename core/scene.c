@@ -73,7 +73,9 @@ static ab_status prepare(ab_scene **made, ab_document *document, ab_scene_reader
         ab_scene_destroy(scene);
         return ab_report_failure(report, "no memory left while reading the scene");
     }
-    *r = (ab_scene_reader){.base = {.arena = own->arena, .formulas = own->formulas, .units = own->units, .report = report}, .scene = scene};
+    *r = (ab_scene_reader){
+        .base = {.arena = own->arena, .formulas = own->formulas, .units = own->units, .report = report, .scene_path = document->path},
+        .scene = scene};
     set_defaults(scene);
     scene->path = document->path;
     *made = scene;
@@ -95,6 +97,7 @@ ab_status ab_scene_read(const char *path, const ab_override *overrides, size_t o
         status = ab_document_set(document, overrides[i].path, overrides[i].value, report);
     if (status != AB_FAILED) {
         take_top(&r, document->root);
+        made->files = r.base.files;
         status = ab_report_errors(report) > errors ? AB_BAD_INPUT : AB_OK;
     }
     if (r.base.out_of_memory) status = ab_report_failure(report, "no memory left while reading the scene");

@@ -278,6 +278,7 @@ typedef struct ab_scene {
     long checkpoint_steps;                    /* 0: not by steps */
     ab_trade_spec trade;
     ab_extremes_spec extremes;
+    const struct ab_file_read *files;  /* that settings were read from (core/schema.h) */
     struct ab_scene_private *private_; /* document, parsers, arena */
 } ab_scene;
 

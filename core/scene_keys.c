@@ -505,20 +505,26 @@ static const ab_key extreme[] = {
 SECTION(extreme, "extremes.vary[i]", extreme, NULL, "A list.",
         "- {name: friction, set: constants.mu, from: 1e-3, to: 1e6}\n- {set: constants.turned, values: [0, 1], same: 1e-10}\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,        &ab_section_damping,
-                                         &ab_section_time,       &ab_section_grid,
-                                         &ab_section_sides,      &ab_section_material,
-                                         &ab_section_body,       &ab_section_shape,
-                                         &ab_section_disc,       &ab_section_ring,
-                                         &ab_section_fill,       &ab_section_basis,
-                                         &ab_section_transfer,   &ab_section_surface,
-                                         &ab_section_mesh,       &ab_section_patch,
-                                         &ab_section_arc,        &ab_section_fix,
-                                         &ab_section_motion,     &ab_section_contact,
-                                         &ab_section_load,       &ab_section_boundary,
-                                         &ab_section_where,      &ab_section_monitor,
-                                         &ab_section_history,    &ab_section_output,
-                                         &ab_section_expect,     &ab_section_trade,
-                                         &ab_section_ladder,     &ab_section_watchdog,
-                                         &ab_section_extremes,   &ab_section_extreme,
-                                         &ab_section_checkpoint, NULL};
+static const ab_key table[] = {
+    [TABLE_FILE] =
+        {"file", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED,
+         .help = "a text file of columns, from the scene's folder: apart by commas, semicolons, tabs or blanks; `#` begins a comment"},
+    [TABLE_COLUMNS] = {"columns", AB_KEY_SECTION,
+                       .help = "which ones, in order: names of the header line, or numbers from 1; default: all of them"},
+    [TABLE_UNITS] = {"units", AB_KEY_SECTION,
+                     .help = "a unit for each of these columns, null: SI; default: those of the header (`t [s]`), else SI"},
+};
+SECTION(table, "A setting that is a table", table, NULL,
+        "Rows stand in the scene, each of its numbers as everywhere (`[[0, 0], [0.5, \"20 kPa\"]]`), or come from a file. Numbers in a "
+        "file have decimal points. A file may "
+        "begin with a line of names, with units in brackets. It has at most 64 MiB and 1000000 rows.",
+        "velocity: {file: base.csv, columns: [t, vx], units: [s, \"cm/s\"]}\nvelocity: [[0, 0], [0.1, \"2 cm/s\"], [0.2, 0]]\n");
+
+const ab_section *const ab_sections[] = {
+    &ab_section_top,      &ab_section_damping,  &ab_section_time,       &ab_section_grid,    &ab_section_sides,
+    &ab_section_material, &ab_section_body,     &ab_section_shape,      &ab_section_disc,    &ab_section_ring,
+    &ab_section_fill,     &ab_section_basis,    &ab_section_transfer,   &ab_section_surface, &ab_section_mesh,
+    &ab_section_patch,    &ab_section_arc,      &ab_section_fix,        &ab_section_motion,  &ab_section_contact,
+    &ab_section_load,     &ab_section_boundary, &ab_section_where,      &ab_section_monitor, &ab_section_history,
+    &ab_section_output,   &ab_section_expect,   &ab_section_trade,      &ab_section_ladder,  &ab_section_watchdog,
+    &ab_section_extremes, &ab_section_extreme,  &ab_section_checkpoint, &ab_section_table,   NULL};

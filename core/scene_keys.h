@@ -65,6 +65,7 @@ enum { BASIS_GIMP, BASIS_KEYS };
 enum { SURFACE_POINTS, SURFACE_KEYS };
 enum { TRANSFER_FLIP, TRANSFER_XPIC, TRANSFER_FMPM, TRANSFER_KEYS };
 enum { CONTACT_BODIES, CONTACT_ALGORITHM, CONTACT_RESPONSE, CONTACT_KEYS };
+enum { TABLE_FILE, TABLE_COLUMNS, TABLE_UNITS, TABLE_KEYS };
 enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_PRESSURE, LOAD_AT, LOAD_FORCE, LOAD_KEYS };
 enum { BOUNDARY_ON, BOUNDARY_WHERE, BOUNDARY_PLUGIN, BOUNDARY_KEYS };
 enum { WHERE_ALL, WHERE_SIDE, WHERE_X, WHERE_Y, WHERE_KEYS };
@@ -112,7 +113,8 @@ extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
     ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
-    ab_section_boundary, ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme, ab_section_checkpoint;
+    ab_section_boundary, ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme, ab_section_checkpoint,
+    ab_section_table;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

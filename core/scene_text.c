@@ -66,6 +66,7 @@ void ab_scene_text(const ab_scene *scene, ab_text *text) {
     for (size_t k = 0; k < scene->boundary_count; k++) write_plugin(scene->boundaries[k].loaded, "boundaries", k, text);
     for (size_t b = 0; b < scene->body_count; b++)
         if (scene->bodies[b].mesh.file != NULL) write_file(scene, scene->bodies[b].mesh.file, text);
+    for (const ab_file_read *file = scene->files; file != NULL; file = file->next) write_file(scene, file->name, text);
     ab_text_add(text, "\n");
 }
 

@@ -47,11 +47,18 @@ typedef struct ab_section {
     const char *more; /* what further keys may stand here (settings of plugins), or NULL: none */
 } ab_section;
 
+typedef struct ab_file_read { /* a file that settings were read from, by its name in the scene */
+    const char *name;
+    struct ab_file_read *next;
+} ab_file_read;
+
 typedef struct ab_reader { /* what every check needs */
     ab_arena *arena;
     ab_formulas *formulas;
     ab_units *units;
     ab_report *report;
+    const char *scene_path; /* files are looked for beside it */
+    ab_file_read *files;    /* so far, the last one first */
     bool out_of_memory;
 } ab_reader;
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/suggest.h"
+#include "core/table_file.h"
 
 /* The same key as the tables of the scene have, so that ranges and units are checked by the same code. */
 static ab_key as_key(const ab_param *param) {
@@ -83,11 +84,15 @@ static void read_choice(ab_reader *reader, const ab_param *param, const ab_key *
                                : ", or a direction [x, y]");
 }
 
-static bool read_row(ab_reader *reader, const ab_key *key, const ab_node *row, size_t columns, const char *where, double *values) {
+static bool read_row(ab_reader *reader, const ab_param *param, const ab_key *key, const ab_node *row, size_t columns, const char *where,
+                     double *values) {
     bool good = true;
+    char unit[80];
     for (size_t c = 0; c < columns; c++) {
         const ab_node *cell = row->kind == AB_NODE_LIST ? row->items[c] : row;
-        if (!ab_read_number(reader, key, cell, where, &values[c])) good = false;
+        ab_key of_column = *key;
+        of_column.unit = ab_table_unit(param, c, unit, sizeof unit);
+        if (!ab_read_number(reader, &of_column, cell, where, &values[c])) good = false;
     }
     return good;
 }
@@ -96,8 +101,12 @@ static void read_table(ab_reader *reader, const ab_param *param, const ab_key *k
                        ab_value *value) {
     char path[AB_WHERE];
     ab_where_join(path, where, param->name);
+    if (node->kind == AB_NODE_MAP) {
+        ab_table_file_read(reader, param, node, where, value);
+        return;
+    }
     if (node->kind != AB_NODE_LIST || node->count == 0) {
-        ab_report_error(reader->report, node->mark, "%s must be a list of %s, not %s", path,
+        ab_report_error(reader->report, node->mark, "%s must be a list of %s, or {file: NAME}, not %s", path,
                         param->flags & AB_COLUMNS_2 ? "pairs [[a, b], ...]" : "rows",
                         node->kind == AB_NODE_LIST ? "an empty one" : ab_node_kind_name(node));
         return;
@@ -115,8 +124,12 @@ static void read_table(ab_reader *reader, const ab_param *param, const ab_key *k
             ab_report_error(reader->report, row->mark, "%s: row %zu must have %zu numbers, not %zu", path, r, columns == 0 ? 1 : columns,
                             found);
             good = false;
-        } else if (!read_row(reader, key, row, columns, where, table + r * columns)) {
+        } else if (!read_row(reader, param, key, row, columns, where, table + r * columns)) {
             good = false;
+        } else if (param->flags & AB_INCREASING && r > 0 && good && !(table[r * columns] > table[(r - 1) * columns])) {
+            ab_report_error(reader->report, row->mark,
+                            "%s: the first column has to grow from row to row: %.9g in row %zu, and %.9g before it", path,
+                            table[r * columns], r, table[(r - 1) * columns]);
         }
     }
     if (!good) return;

@@ -1,4 +1,4 @@
-/* targets.h: readers of what comes from outside, each fed with bytes: scenes, --set, the descriptor of a plugin's file. For test_fuzz.c (a short run with changes of known
+/* targets.h: readers of what comes from outside, each fed with bytes: scenes, --set, tables in files, the descriptor of a plugin's file. For test_fuzz.c (a short run with changes of known
  * inputs, in every build) and for libFuzzer (fuzz.c, by slow_fuzz.sh). Whatever the bytes are: no crash, no leak, an error where one is due. */
 #ifndef FUZZ_TARGETS_H
 #define FUZZ_TARGETS_H
@@ -6,6 +6,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@
 #include "core/document.h"
 #include "core/plugin_elf.h"
 #include "core/scene.h"
+#include "core/table_file.h"
 
 /* A file in memory with these bytes; its name in `path`. -1: none. */
 static inline int fuzz_file(const uint8_t *bytes, size_t count, char path[64]) {
@@ -79,6 +81,49 @@ static inline int fuzz_set(const uint8_t *bytes, size_t count) {
     }
     const int file = fuzz_file((const uint8_t *)fuzz_base, sizeof fuzz_base - 1, path);
     const int wrong = file >= 0 && fuzz_read(path, overrides, lines);
+    if (file >= 0) close(file);
+    free(text);
+    return wrong;
+}
+
+/* A setting that is a table from a file: the first line is what the scene says of it (columns: [t, a], units: [s, m/s2]), the rest is the file. What is taken must be finite and
+ * grow in its first column. */
+static inline int fuzz_table(const uint8_t *bytes, size_t count) {
+    static const ab_param param = {"history", "s, m s-2", "acceleration in time", NULL, AB_TABLE, AB_INCREASING, 0, 0, 0};
+    static ab_units *units; /* reading what they are takes longer than a table does */
+    static int reads;
+    if (reads++ % 10000 == 0) {
+        ab_units_destroy(units);
+        units = ab_units_create();
+    }
+    const uint8_t *end = memchr(bytes, '\n', count);
+    const size_t first = end ? (size_t)(end - bytes) : count;
+    char path[64], *text = malloc(first + 100);
+    const int file = fuzz_file(bytes + first + (end != NULL), count - first - (end != NULL), path);
+    ab_reader reader = {.arena = ab_arena_create(),
+                        .formulas = ab_formulas_create(),
+                        .units = units,
+                        .report = ab_report_create(),
+                        .scene_path = "/scene.yaml"};
+    ab_document *document = NULL;
+    int wrong = 0;
+    if (file >= 0 && text && reader.arena && reader.formulas && reader.units && reader.report) {
+        ab_value value = {0};
+        const int head = sprintf(text, "{file: %s, ", path);
+        memcpy(text + head, bytes, first);
+        text[head + (int)first] = '}';
+        if (ab_document_parse("scene.yaml", text, (size_t)head + first + 1, &document, reader.report) == AB_OK) {
+            const bool taken = ab_table_file_read(&reader, &param, document->root, "boundaries[0]", &value);
+            wrong = taken != (ab_report_errors(reader.report) == 0) || taken != (value.rows * value.columns > 0);
+        }
+        for (size_t k = 0; k < value.rows * value.columns; k++)
+            if (!isfinite(value.table[k]) || (k && k % value.columns == 0 && !(value.table[k] > value.table[k - value.columns]))) wrong = 1;
+        if (wrong) fprintf(stderr, "%zu x %zu numbers, %zu errors\n", value.rows, value.columns, ab_report_errors(reader.report));
+    }
+    ab_document_destroy(document);
+    ab_report_destroy(reader.report);
+    ab_formulas_destroy(reader.formulas);
+    ab_arena_destroy(reader.arena);
     if (file >= 0) close(file);
     free(text);
     return wrong;

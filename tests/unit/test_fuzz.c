@@ -1,4 +1,4 @@
-/* test_fuzz.c: readers of scenes, of --set and of plugin files on known inputs that were changed at random, the same ones in every run. The long run is slow_fuzz.sh. */
+/* test_fuzz.c: readers of scenes, of --set, of tables and of plugin files on known inputs that were changed at random, the same ones in every run. The long run is slow_fuzz.sh. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 
 #include "tests/fuzz/targets.h"
 
-enum { MOST_BYTES = 1 << 16, SEEDS = 64, SCENES = 500, SETS = 1500, PLUGINS = 3000 };
+enum { MOST_BYTES = 1 << 16, SEEDS = 64, SCENES = 500, SETS = 1500, TABLES = 4000, PLUGINS = 3000 };
 
 static uint64_t random_state = 7;
 
@@ -151,6 +151,12 @@ static void test_settings(void **state) {
     run(fuzz_set, SETS);
 }
 
+static void test_tables(void **state) {
+    (void)state;
+    take_seeds("ABUT_SOURCE", "tests/fuzz/corpus", ".table");
+    run(fuzz_table, TABLES);
+}
+
 static void test_plugin_files(void **state) {
     (void)state;
     take_seeds("ABUT_BUILD", "plugins/contact", "s.so");
@@ -159,6 +165,7 @@ static void test_plugin_files(void **state) {
 
 int main(void) {
     unsetenv("ABUT_PLUGIN_PATH");
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scenes), cmocka_unit_test(test_settings), cmocka_unit_test(test_plugin_files)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scenes), cmocka_unit_test(test_settings), cmocka_unit_test(test_tables),
+                                       cmocka_unit_test(test_plugin_files)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
