@@ -64,9 +64,8 @@ static uint32_t edge_of(struct fem_edges *e, uint32_t *last, uint32_t node, cons
 
 static ab_status take_arrays(fem_body *body, struct fem_edges *e, size_t faces, ab_report *report) {
     const size_t nodes = body->element->nodes == 8 ? 3 : 2, shares = nodes * faces;
-    e->ld = (shares + 7) / 8 * 8;
     e->shares = fem_take(body, shares, sizeof *e->shares);
-    e->rows = fem_take(body, ROWS * e->ld, sizeof *e->rows);
+    e->rows = fem_take(body, ROWS * ((shares + 7) / 8 * 8), sizeof *e->rows);
     e->vector = fem_take(body, 2 * shares, sizeof *e->vector);
     e->start = fem_take(body, shares + 1, sizeof *e->start);
     e->dof = fem_take(body, shares, sizeof *e->dof);
@@ -103,6 +102,7 @@ static ab_status create_one(fem_body *body, const fem_faces *faces, size_t bound
         }
     }
     const double density = body->elastic.density;
+    e->ld = (e->count + 7) / 8 * 8; /* as the rows of the host, which it hands to plugins beside its own */
     for (size_t k = 0; k < e->count; ++k) {
         e->weight[k] = 1.0;
         e->rows[3 * e->ld + k] = -1.0; /* of an edge that never has an area, on the axis */
