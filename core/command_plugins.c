@@ -24,12 +24,18 @@ static const word needs[] = {{AB_NEED_DEFORMATION_GRADIENT, "deformation gradien
                              {AB_NEED_FIXED_PLACES, "fixed places"},
                              {AB_NEED_DENSITY_GRADIENT, "density gradient"},
                              {AB_NEED_NEAREST_FACE, "nearest face"},
-                             {AB_NEED_AREA, "area"}};
+                             {AB_NEED_AREA, "area"},
+                             {AB_NEED_WHOLE_SIDE, "the whole side"},
+                             {AB_NEED_AXES, "axes of space"}};
 static const word gives[] = {{AB_GIVE_STRESS, "stress"},
                              {AB_GIVE_DISSIPATION, "dissipation"},
                              {AB_GIVE_WAVE_SPEED, "wave speed"},
                              {AB_GIVE_POINTS, "contact points (algorithm)"},
-                             {AB_GIVE_IMPULSE, "impulses (response)"}};
+                             {AB_GIVE_IMPULSE, "impulses (response)"},
+                             {AB_GIVE_TRACTION, "traction"},
+                             {AB_GIVE_DAMPING, "damping"},
+                             {AB_GIVE_STIFFNESS, "stiffness"},
+                             {AB_GIVE_MOTION, "motion"}};
 static const char *const shapes[] = {"?", "scalar", "vector", "symmetric tensor", "full tensor"};
 
 static int longest(int width, const char *text) {
