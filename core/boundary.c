@@ -24,6 +24,7 @@ typedef struct boundary {
     ab_edges view;            /* what the plugin sees */
     double *storage;          /* all the arrays of the view that the host fills or reads, and those below */
     double *moved;            /* m, in the last step */
+    double *base;             /* m/s, 2 rows: what of the velocity no dof's velocity of now has a part in */
     double *position, *displacement, *velocity, *traction, *damping, *stiffness, *prescribed, *state0, *state1;
     double *impulse;  /* N s, 2 rows, of this step */
     double *given[2]; /* last step's over dt and area, where the next one begins */
@@ -52,7 +53,15 @@ static void velocity_of(const boundary *b, const double *velocity, size_t stride
     for (size_t k = l->start[e]; k < l->start[e + 1]; ++k)
         for (size_t c = 0; c < 2; ++c) v[c] += l->weight[k] * velocity[l->dof[k] * stride + c];
 }
-static void velocity_now(const boundary *b, size_t e, double v[2]) { velocity_of(b, b->dofs.velocity, b->dofs.velocity_stride, e, v); }
+
+/* The velocity at the start and what has changed of it. */
+static void velocity_now(const boundary *b, size_t e, double v[2]) {
+    const ab_edge_list *l = &b->list;
+    const double *answer = l->answer ? l->answer : l->weight;
+    for (size_t c = 0; c < 2; ++c) v[c] = b->base[c * b->ld + e];
+    for (size_t k = l->start[e]; k < l->start[e + 1]; ++k)
+        for (size_t c = 0; c < 2; ++c) v[c] += answer[k] * b->dofs.velocity[l->dof[k] * b->dofs.velocity_stride + c];
+}
 
 static void push(const boundary *b, size_t e, const double j[2]) {
     const ab_edge_list *l = &b->list;
@@ -67,9 +76,10 @@ static void push(const boundary *b, size_t e, const double j[2]) {
 /* What an impulse along x (y) changes of the edge's velocity along x (y), 1/kg. */
 static void response_of(const boundary *b, size_t e, double s[2]) {
     const ab_edge_list *l = &b->list;
+    const double *answer = l->answer ? l->answer : l->weight;
     s[0] = s[1] = 0.0;
     for (size_t k = l->start[e]; k < l->start[e + 1]; ++k)
-        for (size_t c = 0; c < 2; ++c) s[c] += l->weight[k] * l->weight[k] * b->dofs.inverse_mass[l->dof[k] * b->dofs.mass_stride + c];
+        for (size_t c = 0; c < 2; ++c) s[c] += l->weight[k] * answer[k] * b->dofs.inverse_mass[l->dof[k] * b->dofs.mass_stride + c];
 }
 
 /* d along the normal, across it: the tensor (xx, yy, xy) times `factor`. */
@@ -98,6 +108,11 @@ static ab_status ask(const ab_boundaries *all, boundary *b, const ab_step *step,
     for (size_t e = 0; e < count; ++e) {
         double v[2];
         velocity_of(b, b->dofs.velocity_old, b->dofs.old_stride, e, v);
+        b->base[e] = b->base[ld + e] = 0.0;
+        for (size_t k = b->list.start[e]; b->list.answer && k < b->list.start[e + 1]; ++k)
+            for (size_t c = 0; c < 2; ++c)
+                b->base[c * ld + e] +=
+                    (b->list.weight[k] - b->list.answer[k]) * b->dofs.velocity_old[b->list.dof[k] * b->dofs.old_stride + c];
         for (size_t c = 0; c < 2; ++c) {
             b->position[c * ld + e] = b->list.position[c * b->list.ld + e] + all->scene->grid_from[c];
             b->displacement[c * ld + e] += b->moved[c * ld + e];
@@ -280,7 +295,7 @@ static void book(ab_boundaries *all, boundary *b, const ab_step *step) {
     double work = 0.0;
     for (size_t e = 0; e < b->count; ++e) {
         double v[2], mean[2];
-        velocity_now(b, e, v);
+        velocity_of(b, b->dofs.velocity, b->dofs.velocity_stride, e, v);
         for (size_t c = 0; c < 2; ++c) {
             mean[c] = 0.5 * (v[c] + b->velocity[c * ld + e]);
             work += b->impulse[c * ld + e] * mean[c];
@@ -363,12 +378,12 @@ static ab_status make(const ab_scene *scene, ab_domain **domains, boundary *b, a
     AB_TRY(b->domain->ops->edges(b->domain, b->number, &start, &b->list, report));
     const size_t count = b->count = b->list.count, ld = b->ld = (count + 7) / 8 * 8;
     for (uint32_t s = 0; s < class_->nstate; ++s) b->states += (size_t)ab_state_components(class_->state[s].shape);
-    const size_t rows = 2 * (2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 1) + 4 + 2 * b->states;
+    const size_t rows = 2 * (2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 1) + 4 + 2 * b->states;
     double *at = b->storage = calloc(rows * ld + 8, sizeof *b->storage);
     b->flag = calloc(ld + 1, 1);
     if (!at || !b->flag) return ab_report_failure(report, "no memory for %zu edges of boundaries[%zu]", count, b->number);
-    double **const pairs[] = {&b->position, &b->displacement, &b->moved,      &b->velocity, &b->traction,
-                              &b->damping,  &b->stiffness,    &b->prescribed, &b->impulse};
+    double **const pairs[] = {&b->position, &b->displacement, &b->moved,     &b->base,       &b->velocity,
+                              &b->traction, &b->damping,      &b->stiffness, &b->prescribed, &b->impulse};
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; ++k, at += 2 * ld) *pairs[k] = at;
     for (int c = 0; c < 2; ++c, at += ld) b->given[c] = at;
     b->answer = at, at += 4 * ld;

@@ -84,7 +84,10 @@ typedef struct ab_edge_list {
     const double *p_wave_speed, *s_wave_speed; /* m/s */
     const size_t *start;                       /* count + 1: dofs of edge e are dof[start[e]] .. dof[start[e+1]-1] */
     const uint32_t *dof;
-    const double *weight; /* not negative, sum 1 */
+    const double *weight; /* sum 1 */
+    /* By which changes of the dofs' velocities in this step change the edge's: sum 1; NULL: the weights. Nodes of material points that hardly carry mass are thrown about
+     * by stresses that points average over more than reaches them; the mapped velocities that a step begins with know nothing of it. */
+    const double *answer;
 } ab_edge_list;
 
 /* Elements for results: how a body's points (nodes) hang together. */

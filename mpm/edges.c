@@ -20,8 +20,12 @@ struct mpm_edges {
     double *rows; /* ROWS x ld */
     size_t *start;
     uint32_t *dof; /* room of them */
-    double *weight;
+    double *weight, *answer;
 };
+
+/* Of a point's mass: a node with less follows its neighbours. A point's stress is one number over its domain; what of it hangs over onto a node that only a sliver of the
+ * domain reaches accelerates that node by half the domain over the sliver's width too much. */
+static const double FULL = 0.5;
 
 static ab_status no_memory(const mpm_body *body, size_t count, ab_report *report) {
     return ab_report_failure(report, "body '%s': no memory for %zu edges under boundaries", body->domain.spec->name, count);
@@ -44,7 +48,8 @@ static ab_status create_one(mpm_body *body, const ab_fill *fill, size_t boundary
     e->start = calloc(count + 1, sizeof *e->start);
     e->dof = malloc(e->room * sizeof *e->dof);
     e->weight = malloc(e->room * sizeof *e->weight);
-    if (!e->pieces || !e->rows || !e->start || !e->dof || !e->weight || !mpm_points_index(body) ||
+    e->answer = malloc(e->room * sizeof *e->answer);
+    if (!e->pieces || !e->rows || !e->start || !e->dof || !e->weight || !e->answer || !mpm_points_index(body) ||
         !mpm_load_pieces(fill, &spec->where, true, (uint32_t)boundary, e->pieces, &e->count))
         return no_memory(body, count, report);
     const double density = body->material->density;
@@ -85,13 +90,23 @@ static size_t stencil_of(const mpm_body *body, const mpm_load *piece, uint32_t *
     double sum = 0.0;
     for (int i = 0; i < r.count; ++i) {
         const uint32_t k = mpm_dof_of(body, r.tile, (int)r.node[i]);
-        if (!(r.n[i] > 0.0) || !(body->own[(size_t)k * OWN_RECORD + OWN_MASS] > 0.0)) continue;
+        if (r.n[i] == 0.0 || !(body->own[(size_t)k * OWN_RECORD + OWN_MASS] > 0.0)) continue;
         dof[count] = k;
         weight[count++] = r.n[i];
         sum += r.n[i];
     }
     for (size_t i = 0; i < count; ++i) weight[i] /= sum;
     return mpm_light_expand(body, dof, weight, count);
+}
+
+/* Weights for changes of velocity: those of nodes that hardly carry mass go to the others. */
+static void answers(const mpm_body *body, const uint32_t *dof, const double *weight, size_t count, double *answer) {
+    double sum = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        answer[i] = weight[i] * fmin(body->own[(size_t)dof[i] * OWN_RECORD + OWN_MASS] / (FULL * body->point_mass), 1.0);
+        sum += answer[i];
+    }
+    for (size_t i = 0; i < count; ++i) answer[i] = sum > 0.0 ? answer[i] / sum : weight[i];
 }
 
 ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_edge_list *list, ab_report *report) {
@@ -117,7 +132,10 @@ ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
         normal[ld + k] = -piece->stretch[0] / half;
         area[k] = 2.0 * half * (body->axisymmetric ? ab_circumference(piece->now[0] + body->origin[0]) : 1.0);
         e->start[k + 1] = at + stencil_of(body, piece, e->dof + at, e->weight + at);
-        if (e->start[k + 1] == at) area[k] = 0.0;
+        if (e->start[k + 1] == at)
+            area[k] = 0.0;
+        else
+            answers(body, e->dof + at, e->weight + at, e->start[k + 1] - at, e->answer + at);
     }
     *list = (ab_edge_list){.count = e->count,
                            .ld = ld,
@@ -129,7 +147,8 @@ ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
                            .s_wave_speed = x + 7 * ld,
                            .start = e->start,
                            .dof = e->dof,
-                           .weight = e->weight};
+                           .weight = e->weight,
+                           .answer = e->answer};
     return AB_OK;
 }
 
@@ -144,7 +163,7 @@ size_t mpm_edges_bytes(const mpm_body *body) {
     for (size_t n = 0; n < body->edges_count; ++n) {
         const struct mpm_edges *e = body->edges + n;
         bytes += sizeof *e + e->count * (sizeof *e->pieces + sizeof *e->start) + ROWS * e->ld * sizeof *e->rows +
-                 e->room * (sizeof *e->dof + sizeof *e->weight);
+                 e->room * (sizeof *e->dof + 2 * sizeof *e->weight);
     }
     return bytes;
 }
@@ -171,7 +190,7 @@ bool mpm_edges_keep(mpm_body *body, ab_checkpoint *c) {
 void mpm_edges_destroy(mpm_body *body) {
     for (size_t n = 0; n < body->edges_count; ++n) {
         struct mpm_edges *e = body->edges + n;
-        free(e->pieces), free(e->rows), free(e->start), free(e->dof), free(e->weight);
+        free(e->pieces), free(e->rows), free(e->start), free(e->dof), free(e->weight), free(e->answer);
     }
     free(body->edges);
 }
