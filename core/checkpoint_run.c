@@ -8,6 +8,7 @@
 
 #include "core/boundary.h"
 #include "core/scene_text.h"
+#include "core/stages.h"
 #include "core/watchdog.h"
 
 static double wall_clock(void) {
@@ -82,7 +83,7 @@ static bool keep_schedule(ab_schedule *s, ab_checkpoint *c) {
                       ab_keep_doubles(c, "energy_start", (double *)s->energy_start, energies) &&
                       ab_keep_doubles(c, "motion", (double *)s->motion, motions) && ab_keep_struct(c, "total", &s->total) &&
                       ab_keep_doubles(c, "total_now", &s->total_now, 1) && ab_keep_doubles(c, "total_start", &s->total_start, 1) &&
-                      ab_watchdog_keep(s, c);
+                      ab_watchdog_keep(s, c) && ab_stages_keep(s, c);
     ab_checkpoint_leave(c);
     return good;
 }
@@ -113,7 +114,7 @@ static ab_status keep_all(ab_schedule *s, ab_results *results, ab_checkpoint *c)
 
 ab_status ab_checkpoint_restore(ab_checkpoint *c, ab_schedule *s, ab_results *results) {
     AB_TRY(keep_all(s, results, c));
-    if (!(s->time >= 0.0) || s->number < 0) ab_checkpoint_refuse(c, "its time %g s is none", s->time);
+    if (!(s->time >= 0.0 || s->stages) || s->number < 0) ab_checkpoint_refuse(c, "its time %g s is none", s->time);
     if (s->time > s->scene->time_end)
         ab_checkpoint_refuse(c, "is of t = %.9g s, and time.end of the scene is %.9g s: write a later one", s->time, s->scene->time_end);
     return ab_checkpoint_status(c);
@@ -158,7 +159,7 @@ ab_status ab_checkpoints_begin(ab_checkpoints *k, const ab_schedule *s, const ch
 ab_status ab_checkpoints_step(ab_checkpoints *k, ab_schedule *s, ab_results *results, bool now, ab_report *report) {
     if (k->last == s->number) return AB_OK;
     const bool due = now || s->time >= k->next - 1e-6 * s->dt || (k->steps > 0 && s->number % k->steps == 0) ||
-                     (k->wall < (double)INFINITY && wall_clock() - k->written >= k->wall) || (k->at_end && !(s->time < s->scene->time_end));
+                     (k->wall < (double)INFINITY && wall_clock() - k->written >= k->wall) || (k->at_end && ab_stages_done(s));
     if (!due) return AB_OK;
     AB_TRY(write_one(k, s, results, report));
     k->next = next_time(s);

@@ -22,6 +22,9 @@ double ab_term_value(const ab_energy *energy, size_t term) {
 }
 
 size_t ab_term_shown(const ab_scene *scene) {
+    for (size_t k = 0; k < scene->stage_count; k++)
+        for (int side = 0; side < AB_SIDES; side++)
+            if (scene->stages[k].side[side] == AB_SIDE_OUTFLOW) return AB_TERMS;
     for (int side = 0; side < AB_SIDES; side++)
         if (scene->side[side] == AB_SIDE_OUTFLOW) return AB_TERMS;
     return AB_TERMS - 1;
@@ -32,15 +35,17 @@ double ab_energy_balance(const ab_energy *e) {
            e->external;
 }
 
-/* t, step, dt | terms, remainder | terms of each body */
-enum { BEFORE = 3 };
+/* t, step, dt, where there are stages their number | terms, remainder | terms of each body */
+static size_t before(const ab_scene *scene) { return scene->stage_count > 0 ? 4 : 3; }
 
-size_t ab_column_count(const ab_scene *scene) { return BEFORE + ab_term_shown(scene) + 1 + scene->body_count * ab_term_shown(scene); }
+size_t ab_column_count(const ab_scene *scene) {
+    return before(scene) + ab_term_shown(scene) + 1 + scene->body_count * ab_term_shown(scene);
+}
 
 void ab_column_name(const ab_scene *scene, size_t column, char *name, size_t size) {
-    static const char *const first[BEFORE] = {"t", "step", "dt"};
-    const size_t shown = ab_term_shown(scene), ledger = column - BEFORE;
-    if (column < BEFORE)
+    static const char *const first[] = {"t", "step", "dt", "stage"};
+    const size_t shown = ab_term_shown(scene), ledger = column - before(scene);
+    if (column < before(scene))
         snprintf(name, size, "%s", first[column]);
     else if (ledger < shown)
         snprintf(name, size, "%s", terms[ledger].name);
@@ -50,11 +55,12 @@ void ab_column_name(const ab_scene *scene, size_t column, char *name, size_t siz
         snprintf(name, size, "%.256s.%s", scene->bodies[(ledger - shown - 1) / shown].name, terms[(ledger - shown - 1) % shown].name);
 }
 
-const char *ab_column_unit(size_t column) { return column == 1 ? "1" : column < BEFORE ? "s" : "J"; }
+const char *ab_column_unit(const ab_scene *scene, size_t column) { return column >= before(scene) ? "J" : column % 2 == 1 ? "1" : "s"; }
 
 double ab_column_value(const ab_state_view *view, size_t column) {
-    if (column < BEFORE) return column == 0 ? view->time : column == 1 ? (double)view->step : view->dt;
-    const size_t shown = ab_term_shown(view->scene), ledger = column - BEFORE;
+    const size_t first = before(view->scene), shown = ab_term_shown(view->scene), ledger = column - first;
+    if (column < first)
+        return column == 0 ? view->time : column == 1 ? (double)view->step : column == 2 ? view->dt : (double)view->stage + 1;
     if (ledger < shown) return ab_term_value(&view->total, ledger);
     if (ledger == shown) return view->remainder;
     return ab_term_value(&view->energy[(ledger - shown - 1) / shown], (ledger - shown - 1) % shown);

@@ -17,7 +17,7 @@ double ab_energy_balance(const ab_energy *energy); /* sum of the terms less exte
 size_t ab_column_count(const ab_scene *scene);
 /* Name of a column; `name` holds at least 320 bytes. */
 void ab_column_name(const ab_scene *scene, size_t column, char *name, size_t size);
-const char *ab_column_unit(size_t column);
+const char *ab_column_unit(const ab_scene *scene, size_t column);
 double ab_column_value(const ab_state_view *view, size_t column);
 /* SIZE_MAX where there is none of that name. */
 size_t ab_column_find(const ab_scene *scene, const char *name);

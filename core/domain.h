@@ -18,6 +18,9 @@ typedef struct ab_step { /* one time step, the same for every domain */
     long number;       /* from 0 */
     double gravity[3]; /* m/s2, at time + dt/2 */
     double damping;    /* local non-viscous factor in this step */
+    size_t stage;      /* of the scene; 0 where it has none */
+    bool settling;     /* what is driven stands still: velocities that are given are 0 */
+    bool measure;      /* balance() will be asked for */
 } ab_step;
 
 /* What a body did in one step or since the start; J (per m of thickness in plane strain): the ledger. */
@@ -159,6 +162,13 @@ typedef struct ab_domain_ops {
     ab_status (*read)(const ab_domain *, const char *field, double *values,
                       ab_report *); /* values[i*components + c], i in order of id; "id" gives ids */
     void (*plan)(const ab_domain *, ab_plan_body *);
+    /* Stages; each may be NULL. enter: sides, supports and loads of a stage, before its first step. rest: all velocities that are not given to zero, after a
+     * step; their energy is booked as damping. datum: displacements are counted from here. balance: of the last step, which said `measure`, sums over the
+     * degrees of freedom that are free, N: of the sizes of the force out of balance (contact included, damping not), and of the forces applied from outside. */
+    ab_status (*enter)(ab_domain *, const ab_stage_spec *, size_t stage, ab_report *);
+    void (*rest)(ab_domain *, const ab_step *);
+    ab_status (*datum)(ab_domain *, ab_report *);
+    void (*balance)(const ab_domain *, double *unbalanced, double *applied);
     /* Between two steps: saves all that the next one needs and creation does not give, or brings it back into a body just created. See core/checkpoint.h. */
     void (*keep)(ab_domain *, struct ab_checkpoint *);
 } ab_domain_ops;

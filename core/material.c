@@ -119,6 +119,33 @@ ab_status ab_material_open(const ab_material_spec *material, ab_service *service
     return AB_OK;
 }
 
+int ab_material_start_from(const ab_material_spec *material, void *self, const double stress[4][8], ab_material_start *start,
+                           double borne[4][8]) {
+    const ab_loaded_class *loaded = material->loaded;
+    const ab_class *class_ = &loaded->class_;
+    small_batch batch;
+    open_batch(&batch, material);
+    memcpy(batch.stress0, stress, sizeof batch.stress0);
+    memcpy(batch.stress1, stress, sizeof batch.stress1);
+    memcpy(borne, stress, sizeof batch.stress0);
+    int row = 0;
+    for (uint32_t s = 0; s < class_->nstate; ++s)
+        for (int c = 0; c < ab_state_components(class_->state[s].shape); ++c, ++row)
+            for (int l = 0; l < 8; ++l) batch.state0[row][l] = batch.state1[row][l] = class_->state[s].initial;
+    int code = loaded->material.start ? loaded->material.start(self, &batch.view) : 0;
+    if (code != 0) return code;
+    memcpy(start->stress, stress, sizeof start->stress);
+    memcpy(start->state, batch.state1, sizeof start->state);
+    memcpy(batch.state0, batch.state1, sizeof batch.state0);
+    memcpy(batch.stress1, stress, sizeof batch.stress1);
+    batch.view.dt = 1.0; /* without strain, however long */
+    code = loaded->material.update(self, &batch.view);
+    memcpy(borne, batch.stress1, sizeof batch.stress1);
+    start->wave_speed = 0.0;
+    for (int l = 0; l < 8; ++l) start->wave_speed = fmax(start->wave_speed, batch.speed[l]);
+    return code;
+}
+
 /* Slopes of the stress over a strain of SMALL from the stress in `batch`, each for itself: pulled, pushed, sheared one way and the other. */
 enum { PULLED, PUSHED, SHEARED, SHEARED_BACK, WAYS };
 static const double SMALL = 1e-7; /* strain: rounding and curvature both stay below 1e-8 of the tangent */

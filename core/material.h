@@ -22,6 +22,9 @@ typedef struct ab_material_start { /* eight points before the first step */
  * AB_MATERIAL_STATES, refuses its settings, or says no wave speed is AB_BAD_INPUT. */
 ab_status ab_material_open(const ab_material_spec *, ab_service *, void **self, ab_material_start *, ab_report *);
 
+/* Stress and states where the scene gives the stress, and what the material makes of it without any strain: the same where it bears it. Not 0: the material failed. */
+int ab_material_start_from(const ab_material_spec *, void *self, const double stress[4][8], ab_material_start *, double borne[4][8]);
+
 /* The tangent at the start, Pa, by central differences of `update` at a strain of 1e-7; isotropy is taken for granted. */
 ab_status ab_material_tangent(const ab_material_spec *, ab_service *, void *self, const ab_material_start *, double *lambda, double *mu,
                               ab_report *);

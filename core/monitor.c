@@ -117,7 +117,9 @@ static double point_value(const monitor *m, const body_points *points, const dou
     switch (m->quantity) {
     case THE_LENGTH: return dimension == 3 ? sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) : hypot(row[0], row[1]);
     case THE_PRESSURE: return -(row[0] + row[1] + row[2]) / 3;
-    case THE_DISPLACEMENT: return row[m->component] - points->position[start * (size_t)dimension + (size_t)m->component];
+    case THE_DISPLACEMENT:
+        return row[m->component] -
+               (points->datum != NULL ? points->datum : points->position)[start * (size_t)dimension + (size_t)m->component];
     default: return row[m->component];
     }
 }
@@ -231,6 +233,7 @@ void ab_monitors_destroy(ab_monitors *monitors) {
         for (int f = 0; f < FIELDS_PER_BODY; f++) free(monitors->of_body[b].fields[f].values);
         free(monitors->of_body[b].position);
         free(monitors->of_body[b].id);
+        free(monitors->of_body[b].datum);
     }
     free(monitors->items);
     free(monitors->of_body);

@@ -15,6 +15,9 @@ ab_status ab_monitors_create(const ab_state_view *start, ab_monitors **monitors,
 ab_status ab_monitor_value(ab_monitors *monitors, size_t index, const ab_state_view *view, double *value, ab_report *report);
 const char *ab_monitor_unit(const ab_monitors *monitors, size_t index);
 bool ab_monitor_is_cheap(const ab_monitors *monitors, size_t index); /* true where no field is read */
+/* Between two steps: displacements are counted from the places of now; and for checkpoints, where they are counted from. */
+ab_status ab_monitors_datum(ab_monitors *monitors, const ab_state_view *view, ab_report *report);
+void ab_monitors_keep(ab_monitors *monitors, struct ab_checkpoint *checkpoint);
 void ab_monitors_destroy(ab_monitors *monitors);
 
 #endif

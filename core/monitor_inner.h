@@ -23,6 +23,7 @@ typedef struct body_points { /* what is kept of a body's start, where a monitor 
     size_t count;            /* points at the start */
     double *position;        /* count x dimension */
     double *id;              /* count */
+    double *datum;           /* as position: where displacements are counted from; NULL: from the start */
     field_values fields[FIELDS_PER_BODY];
 } body_points;
 

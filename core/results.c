@@ -169,6 +169,10 @@ ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_rep
     return frame(results, view, report);
 }
 
+ab_status ab_results_datum(ab_results *results, const ab_state_view *view, ab_report *report) {
+    return ab_monitors_datum(results->monitors, view, report);
+}
+
 ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report) {
     AB_TRY(sample(results, view, true, report));
     return frame(results, view, report);

@@ -28,6 +28,7 @@ typedef struct ab_state_view { /* what monitors and writers look at; borrowed fr
     double time, dt;
     long step;
     const char *limit;                 /* what binds dt */
+    size_t stage;                      /* 0 where the scene has none */
     ab_domain **domains;               /* body_count */
     const ab_contact_totals *contacts; /* contact_count */
     const ab_energy *energy;           /* per body, friction and contact booked */
@@ -52,6 +53,8 @@ void ab_results_keep(ab_results *results, struct ab_checkpoint *checkpoint);
 ab_status ab_results_continue(ab_results *results, ab_report *report);
 /* After every step (and once before the first): history row when due, monitors and expects always, a frame when due. */
 ab_status ab_results_step(ab_results *results, const ab_state_view *view, ab_report *report);
+/* Between two steps: displacements of monitors are counted from here on. */
+ab_status ab_results_datum(ab_results *results, const ab_state_view *view, ab_report *report);
 /* A frame now, whatever is due (the end, a failure). */
 ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_report *report);
 

@@ -95,6 +95,7 @@ void ab_results_keep(ab_results *results, ab_checkpoint *c) {
     if (!good) return;
     if (every == scene->output_every) results->next_frame = next; /* else the next step has one */
     keep_expects(results, c);
+    if (scene->stage_count > 0) ab_monitors_keep(results->monitors, c);
     ab_frames_keep(results->frames, c);
 }
 

@@ -26,11 +26,13 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_scene_take_watchdog(r, v[TOP_WATCHDOG]);
     ab_scene_take_time(r, v[TOP_TIME]);
     ab_scene_take_grid(r, v[TOP_GRID]);
+    ab_scene_take_stages(r, root, v[TOP_TIME], v[TOP_STAGES]);
     ab_scene_take_materials(r, v[TOP_MATERIALS]);
     ab_scene_take_bodies(r, v[TOP_BODIES]);
     ab_scene_take_contacts(r, v[TOP_CONTACT]);
     ab_scene_check_grid(r, root);
     ab_scene_check_axisymmetric(r);
+    ab_scene_check_initial(r);
     ab_scene_take_loads(r, v[TOP_LOADS]);
     ab_scene_take_boundaries(r, v[TOP_BOUNDARIES]);
     ab_scene_take_monitors(r, v[TOP_MONITORS]);

@@ -3,6 +3,8 @@
 #ifndef AB_SCENE_H
 #define AB_SCENE_H
 
+#include <stdint.h>
+
 #include "core/expression.h"
 #include "core/plugin_host.h"
 
@@ -80,6 +82,7 @@ typedef struct ab_fix_spec { /* nodes whose velocity is given */
     ab_where where;
     bool has[2];           /* false: that direction is free */
     ab_number velocity[2]; /* m/s, formulas of t */
+    uint64_t absent;       /* a bit for each stage in which it does not act */
 } ab_fix_spec;
 
 typedef struct ab_motion_spec { /* of a rigid body; what is not given follows from forces */
@@ -88,6 +91,17 @@ typedef struct ab_motion_spec { /* of a rigid body; what is not given follows fr
     double center[2];            /* m: the point that velocity is of; default: centre of mass */
     double mass, inertia;        /* kg, kg m2 (per m of thickness) */
 } ab_motion_spec;
+
+/* What a body begins with. K0: vertical stress = weight of what the body has above + surcharge, k0 times that in both other directions. */
+typedef enum ab_initial_kind { AB_INITIAL_NONE = 0, AB_INITIAL_K0, AB_INITIAL_STRESS, AB_INITIAL_GRAVITY } ab_initial_kind;
+typedef struct ab_initial_spec {
+    ab_initial_kind kind;
+    ab_mark mark;
+    double k0, surcharge; /* 1, Pa */
+    const char *rule;     /* K0: where k0 is from, in words */
+    ab_number stress[4];  /* AB_INITIAL_STRESS: xx, yy, zz, xy, Pa, formulas of x, y */
+    double time;          /* AB_INITIAL_GRAVITY: s, at most; 0: not said */
+} ab_initial_spec;
 
 typedef enum ab_transfer { AB_TRANSFER_FLIP = 0, AB_TRANSFER_APIC, AB_TRANSFER_TPIC, AB_TRANSFER_XPIC, AB_TRANSFER_FMPM } ab_transfer;
 
@@ -113,6 +127,7 @@ typedef struct ab_body_spec {
     char *update;          /* "usf" | "usl" | "musl" */
     double surface_points; /* cells between points on the outline, which touch other bodies; 0: domains of material points do */
     ab_number velocity[2]; /* formulas of x, y */
+    ab_initial_spec initial;
     bool gravity;
     bool has_force;
     ab_number force[2]; /* m/s2, formulas of t, x, y now and X, Y at the start */
@@ -151,6 +166,7 @@ typedef struct ab_load_spec {
     bool point;            /* a force at one place instead */
     double at[2];          /* m: the node nearest to it carries the force; of a rigid body the place itself */
     ab_number force[2];    /* N (per m of thickness), formulas of t */
+    uint64_t absent;       /* a bit for each stage in which it does not act */
 } ab_load_spec;
 
 typedef struct ab_boundary_spec { /* a boundary plugin on part of a body's outline */
@@ -239,6 +255,27 @@ typedef struct ab_extremes_spec {
     double energy; /* remainder above which energy was made */
 } ab_extremes_spec;
 
+enum { AB_STAGES = 64 }; /* at most: a bit each */
+typedef enum ab_stage_gravity { AB_GRAVITY_KEEP = 0, AB_GRAVITY_RAMP, AB_GRAVITY_OFF } ab_stage_gravity;
+
+/* A part of the run with settings of its own. A scene with `time` alone has none. */
+typedef struct ab_stage_spec {
+    char *name;
+    ab_mark mark;
+    bool made;      /* for bodies whose initial stress is that of gravity: before t = 0, formulas and what is driven stand still */
+    double end;     /* s: at the latest; the next one begins at this time whenever it ended. Of one that is made 0 */
+    double dt, cfl; /* dt 0: by cfl; cfl 0: by dt */
+    ab_stage_gravity gravity;
+    double ramp;                /* s, of AB_GRAVITY_RAMP; 0: half of the stage */
+    double local, local_until;  /* damping; until: s, INFINITY: all the stage */
+    bool kinetic;               /* damping: all velocities to zero where the kinetic energy has passed a peak */
+    bool has_until;             /* ends when the two ratios are met: */
+    double unbalanced, at_rest; /* force out of balance over force applied; kinetic energy over work from outside; INFINITY: not asked */
+    bool go_on;                 /* a warning, and on, where they are not met in time */
+    ab_side_kind side[AB_SIDES];
+    bool zero_displacements, zero_velocities; /* at its end */
+} ab_stage_spec;
+
 typedef struct ab_scene {
     char *path, *title;
     ab_space space;
@@ -250,6 +287,8 @@ typedef struct ab_scene {
     double damping_local, damping_until; /* until: s, INFINITY when always */
     double time_end, time_dt, time_cfl;  /* dt 0: by cfl; cfl 0: by dt */
     ab_mark mark_time, mark_grid;
+    ab_stage_spec *stages; /* in their order; time_end, time_dt and time_cfl are then of the last, and of the first that is not made */
+    size_t stage_count;    /* 0: all of the run is one */
     double grid_from[2], grid_to[2], grid_cell; /* cell 0: no grid (finite elements and rigid bodies alone) */
     int grid_cells[2];
     ab_side_kind side[AB_SIDES];

@@ -151,6 +151,7 @@ static const unsigned belongs[BODY_KEYS] = {
     [BODY_F_BAR] = POINTS,
     [BODY_SURFACE] = POINTS,
     [BODY_VELOCITY] = POINTS | ELEMENTS | RIGID,
+    [BODY_INITIAL] = POINTS | ELEMENTS,
     [BODY_GRAVITY] = POINTS | ELEMENTS | RIGID,
     [BODY_FORCE] = POINTS | ELEMENTS,
     [BODY_MESH] = ELEMENTS | RIGID,
@@ -254,6 +255,7 @@ static void take_body(ab_scene_reader *r, const ab_entry *entry, ab_body_spec *b
                           body->force[1].value != 0;
     if (method != 0) take_outline(r, v, where, method, mark, body);
     if (method == POINTS) take_points(r, v, where, body);
+    if (v[BODY_INITIAL] != NULL) ab_scene_take_initial(r, v[BODY_INITIAL], ab_where_join(path, where, "initial"), body);
     if (v[BODY_FIX] != NULL) ab_scene_take_fix(r, v[BODY_FIX], ab_where_join(path, where, "fix"), body);
     if (v[BODY_MOTION] != NULL) ab_scene_take_motion(r, v[BODY_MOTION], ab_where_join(path, where, "motion"), body);
     if (method == RIGID) ab_scene_hold_radius(r, body);

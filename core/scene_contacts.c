@@ -218,6 +218,7 @@ static void take_load(ab_scene_reader *r, const ab_node *node, const char *where
     ab_read_formula(&r->base, &key[LOAD_PRESSURE], v[LOAD_PRESSURE], where, &load->pressure);
     ab_read_point(&r->base, &key[LOAD_AT], v[LOAD_AT], where, load->at);
     ab_read_vector(&r->base, &key[LOAD_FORCE], v[LOAD_FORCE], where, load->force);
+    if (v[LOAD_STAGES] != NULL) load->absent = ab_scene_take_absent(r, v[LOAD_STAGES], ab_where_join(path, where, "stages"));
     if (take_kind(r, node, v, where, load) && known) check_load_method(r, v, where, load);
 }
 

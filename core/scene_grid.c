@@ -6,23 +6,23 @@
 
 enum { MOST_CELLS = 100000000 }; /* in one direction; only cells with material cost anything, their numbers must fit */
 
-static void take_sides(ab_scene_reader *r, const ab_node *node) {
+void ab_scene_take_sides(ab_scene_reader *r, const ab_node *node, const char *where, ab_side_kind side[AB_SIDES]) {
     const ab_node *v[SIDES_KEYS];
-    if (!ab_section_open(&r->base, &ab_section_sides, node, "grid.sides", v)) return;
+    if (!ab_section_open(&r->base, &ab_section_sides, node, where, v)) return;
     for (int s = 0; s < SIDES_KEYS; s++) {
         const ab_key *key = &ab_section_sides.keys[s];
         if (v[s] != NULL && v[s]->kind == AB_NODE_MAP) {
             ab_report_error(r->base.report, v[s]->mark,
-                            "grid.sides.%s: boundary plugins at sides are not in this version yet; there is: free, roller, fixed, outflow",
+                            "%s.%s: boundary plugins at sides are not in this version yet; there is: free, roller, fixed, outflow", where,
                             key->name);
             continue;
         }
         char *word = NULL;
-        if (!ab_read_word(&r->base, key, v[s], "grid.sides", &word)) continue;
-        r->scene->side[s] = strcmp(word, "roller") == 0    ? AB_SIDE_ROLLER
-                            : strcmp(word, "fixed") == 0   ? AB_SIDE_FIXED
-                            : strcmp(word, "outflow") == 0 ? AB_SIDE_OUTFLOW
-                                                           : AB_SIDE_FREE;
+        if (v[s] == NULL || !ab_read_word(&r->base, key, v[s], where, &word)) continue; /* free, or as in the stage before */
+        side[s] = strcmp(word, "roller") == 0    ? AB_SIDE_ROLLER
+                  : strcmp(word, "fixed") == 0   ? AB_SIDE_FIXED
+                  : strcmp(word, "outflow") == 0 ? AB_SIDE_OUTFLOW
+                                                 : AB_SIDE_FREE;
     }
 }
 
@@ -67,7 +67,7 @@ void ab_scene_take_grid(ab_scene_reader *r, const ab_node *node) {
     const bool from = ab_read_point(&r->base, &key[GRID_FROM], v[GRID_FROM], "grid", scene->grid_from);
     const bool to = ab_read_point(&r->base, &key[GRID_TO], v[GRID_TO], "grid", scene->grid_to);
     const bool cell = ab_read_number(&r->base, &key[GRID_CELL], v[GRID_CELL], "grid", &scene->grid_cell);
-    if (v[GRID_SIDES] != NULL) take_sides(r, v[GRID_SIDES]);
+    if (v[GRID_SIDES] != NULL) ab_scene_take_sides(r, v[GRID_SIDES], "grid.sides", scene->side);
     if (from && cell) ab_scene_take_axis(r, v[GRID_FROM]->mark);
     if (from && to && cell)
         for (int d = 0; d < 2; d++) count_cells(r, d, v[GRID_TO]->mark);

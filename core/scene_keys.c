@@ -23,7 +23,7 @@ static const ab_key top[] = {
     [TOP_GRAVITY] = {"gravity", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLE_T,
                      .help = "acceleration of gravity"},
     [TOP_DAMPING] = {"damping", AB_KEY_SECTION, .help = "local non-viscous damping"},
-    [TOP_TIME] = {"time", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "how long, and in which steps"},
+    [TOP_TIME] = {"time", AB_KEY_SECTION, .help = "how long, and in which steps; required but for scenes with stages"},
     [TOP_GRID] = {"grid", AB_KEY_SECTION,
                   .help = "the background grid; needed by material points, and by contact algorithms that look at its nodes"},
     [TOP_MATERIALS] = {"materials", AB_KEY_SECTION, .help = "materials by name; all bodies but rigid ones need one"},
@@ -34,7 +34,8 @@ static const ab_key top[] = {
     [TOP_HISTORY] = {"history", AB_KEY_SECTION, .help = "rows of history.csv"},
     [TOP_OUTPUT] = {"output", AB_KEY_SECTION, .help = "frames of results.h5"},
     [TOP_EXPECT] = {"expect", AB_KEY_SECTION, .help = "list of answers that must come out"},
-    [TOP_STAGES] = {"stages", AB_KEY_LATER, .help = "there is one explicit stage; write time: {end, dt or cfl}"},
+    [TOP_STAGES] = {"stages", AB_KEY_SECTION,
+                    .help = "list of parts of the run with settings of their own, in place of time (docs/stages.md)"},
     [TOP_BOUNDARIES] = {"boundaries", AB_KEY_SECTION,
                         .help = "list of boundary plugins on parts of outlines: sides that absorb waves, bases that shake"},
     [TOP_CHECKPOINT] = {"checkpoint", AB_KEY_SECTION, .help = "when the state of the run is saved, to go on from"},
@@ -69,6 +70,55 @@ SECTION(
     time, "time", time_, NULL,
     "`dt` or `cfl`, not both; with neither, cfl 0.25. `--set time.dt=...` takes the place of a cfl in the file, and the other way round.",
     "time: {end: 1.5, cfl: 0.4}\n");
+
+static const ab_key stage[] = {
+    [STAGE_NAME] = {"name", AB_KEY_TEXT, .help = "what loads, supports and results call it; default stage-1, stage-2 ..."},
+    [STAGE_SCHEME] = {"scheme", AB_KEY_WORD, .words = "explicit|!quasi-static|!newmark", .initial = "explicit",
+                      .help = "how it is computed"},
+    [STAGE_END] = {"end", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "time of the scene at which it ends; or"},
+    [STAGE_DURATION] = {"duration", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "how long it takes; with until: at most"},
+    [STAGE_DT] = {"dt", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "fixed time step; in place of cfl"},
+    [STAGE_CFL] = {"cfl", AB_KEY_NUMBER, .unit = "1", .initial = "0.25", POSITIVE, .help = "time step as a part of the critical one"},
+    [STAGE_GRAVITY] = {"gravity", AB_KEY_WORD, .words = "keep|ramp|off", .initial = "keep",
+                       .help =
+                           "keep: as the scene has it; ramp: grows (1-cos)/2 to that from what it was in the stage before, from nothing "
+                           "in the first; off: none"},
+    [STAGE_RAMP] = {"ramp", AB_KEY_NUMBER, .unit = "s", POSITIVE, .help = "how long gravity: ramp takes; default: half of the stage"},
+    [STAGE_DAMPING] = {"damping", AB_KEY_SECTION, .help = "{local: 0.7} or {kinetic: true}; default: none"},
+    [STAGE_UNTIL] = {"until", AB_KEY_SECTION, .help = "it ends when the bodies have come to rest"},
+    [STAGE_SIDES] = {"sides", AB_KEY_SECTION,
+                     .help = "sides of the grid from here on, as grid.sides; those that are not named stay as they were"},
+    [STAGE_DISPLACEMENTS] = {"displacements", AB_KEY_WORD, .words = "keep|zero", .initial = "keep",
+                             .help = "at its end; zero: from there on they are counted from where things are then"},
+    [STAGE_VELOCITIES] = {"velocities", AB_KEY_WORD, .words = "keep|zero", .initial = "keep",
+                          .help = "at its end; zero: what is not driven begins the next stage at rest"},
+};
+SECTION(
+    stage, "stages[i]", stage, NULL,
+    "A list, in place of `time`. The clock goes on from stage to stage; one that ends early, by `until`, leaves the rest of its time out, "
+    "so that what comes "
+    "after begins at the same time however long the settling took. Loads and supports act in all stages but where they have `stages`.",
+    "stages:\n  - {name: settle, duration: 2, gravity: ramp, damping: {local: 0.7}, until: {unbalanced_force: 1e-4, kinetic_energy: 1e-4}, "
+    "displacements: zero}\n  - {name: shake, duration: 5, cfl: 0.5, sides: {right: free}}\n");
+
+static const ab_key calm[] = {
+    [CALM_LOCAL] = {"local", AB_KEY_NUMBER, .unit = "1", .initial = "0", .flags = AB_KEY_RANGE | AB_KEY_MAX_OPEN, .min = 0, .max = 1,
+                    .help = "part of the unbalanced force that is taken away against the motion (Cundall 1987)"},
+    [CALM_KINETIC] = {"kinetic", AB_KEY_FLAG, .initial = "false",
+                      .help = "true: when the kinetic energy of all bodies has passed a peak, they are stopped (Cundall 1982)"},
+};
+SECTION(calm, "stages[i].damping", calm, NULL, "What it takes is `damping` in the ledger.", "damping: {local: 0.7}\n");
+
+static const ab_key until[] = {
+    [UNTIL_FORCE] = {"unbalanced_force", AB_KEY_NUMBER, .unit = "1", POSITIVE,
+                     .help = "force out of balance over the force applied (weight, loads): sizes summed over all nodes that are free"},
+    [UNTIL_ENERGY] = {"kinetic_energy", AB_KEY_NUMBER, .unit = "1", POSITIVE,
+                      .help = "kinetic energy over the work of weight and loads in this stage"},
+    [UNTIL_MISSED] = {"missed", AB_KEY_WORD, .words = "stop|warn", .initial = "stop",
+                      .help = "where the stage's time is over before: end the run, or go on with a warning"},
+};
+SECTION(until, "stages[i].until", until, NULL, "One of the two ratios or both; they must hold for ten steps on end.",
+        "until: {unbalanced_force: 1e-4, kinetic_energy: 1e-4}\n");
 
 static const ab_key grid[] = {
     [GRID_FROM] = {"from", AB_KEY_POINT, .unit = "m", .flags = AB_KEY_REQUIRED, .help = "lower left corner"},
@@ -125,6 +175,9 @@ static const ab_key body[] = {
                               "apart (multi-velocity: the outline between them); another distance is {points: 0.25}"},
     [BODY_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .initial = "[0, 0]", .variables = AB_VARIABLES_XY,
                        .help = "velocity at the start"},
+    [BODY_INITIAL] = {"initial", AB_KEY_SECTION,
+                      .help =
+                          "stress at the start, so that the body begins in equilibrium (docs/stages.md); material-points, finite-elements"},
     [BODY_GRAVITY] = {"gravity", AB_KEY_FLAG, .initial = "true", .help = "false: gravity does not act on this body"},
     [BODY_FORCE] =
         {"body_force", AB_KEY_VECTOR, .unit = "m s-2", .initial = "[0, 0]", .variables = AB_VARIABLES_MOTION,
@@ -191,11 +244,32 @@ static const ab_key fix[] = {
     [FIX_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "which nodes"},
     [FIX_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
                       .help = "their velocity; null in place of a number leaves that direction free"},
+    [FIX_STAGES] = {"stages", AB_KEY_SECTION, .help = "name of a stage or list of names: it holds in these only; default: in all"},
 };
 SECTION(fix, "bodies.NAME.fix[i]", fix, NULL,
         "A list. Nodes of a finite-element body whose velocity is given. Where two entries give one node a velocity in the same direction, "
         "the last one holds; a warning says so when they differ.",
         "fix:\n  - {where: {x: 0}, velocity: [0, 0]}\n  - {where: {side: top}, velocity: [null, \"-0.1*t\"]}\n");
+
+static const ab_key initial[] = {
+    [INITIAL_STRESS] =
+        {"stress", AB_KEY_SECTION, .unit = "Pa", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLES_XY,
+         .help = "K0: vertical stress is the weight of what the body has above, horizontal stress K0 times that; gravity: a stage in which "
+                 "gravity grows and the scene settles is put before the start, t < 0; or [sxx, syy, szz, sxy], formulas of x, y, "
+                 "tension positive"},
+    [INITIAL_K0] = {"K0", AB_KEY_NUMBER, .unit = "1", .flags = AB_KEY_RANGE, .min = 0, .max = ANY,
+                    .help =
+                        "horizontal over vertical stress; default: 1 - sin(friction) of a material with a setting friction (Jaky 1944), "
+                        "nu/(1 - nu) of others (elastic, sides held)"},
+    [INITIAL_SURCHARGE] = {"surcharge", AB_KEY_NUMBER, .unit = "Pa", .initial = "0",
+                           .help = "pressure of what else lies on the body's surface; stress: K0"},
+    [INITIAL_TIME] = {"time", AB_KEY_NUMBER, .unit = "s", POSITIVE,
+                      .help = "how long the settling may take; stress: gravity. Default: 200 times the slowest body's height over its wave "
+                              "speed, times four"},
+};
+SECTION(initial, "bodies.NAME.initial", initial, NULL,
+        "`K0` and `gravity` go along the scene's gravity at t = 0. A stress that the material cannot bear is refused, with the place.",
+        "initial: {stress: K0, K0: 0.5, surcharge: \"10 kPa\"}\n");
 
 static const ab_key motion[] = {
     [MOTION_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_NULL, .variables = AB_VARIABLE_T,
@@ -310,6 +384,7 @@ static const ab_key load[] = {
                      "a place at the start, with force: of finite elements the nearest node is taken, of a rigid body the place itself"},
     [LOAD_FORCE] = {"force", AB_KEY_VECTOR, .unit = "N", .variables = AB_VARIABLE_T,
                     .help = "force (per m of thickness) on that place of the body; finite-elements, rigid"},
+    [LOAD_STAGES] = {"stages", AB_KEY_SECTION, .help = "name of a stage or list of names: it acts in these only; default: in all"},
 };
 SECTION(load, "loads[i]", load, NULL, "A list. `where` with `traction` or `pressure`, or `at` with `force`.",
         "loads:\n  - {body: block, where: {side: top}, traction: [0, \"-10e3*min(t/0.1, 1)\"]}\n  - {body: wall, where: {side: left}, "
@@ -520,11 +595,42 @@ SECTION(table, "A setting that is a table", table, NULL,
         "begin with a line of names, with units in brackets. It has at most 64 MiB and 1000000 rows.",
         "velocity: {file: base.csv, columns: [t, vx], units: [s, \"cm/s\"]}\nvelocity: [[0, 0], [0.1, \"2 cm/s\"], [0.2, 0]]\n");
 
-const ab_section *const ab_sections[] = {
-    &ab_section_top,      &ab_section_damping,  &ab_section_time,       &ab_section_grid,    &ab_section_sides,
-    &ab_section_material, &ab_section_body,     &ab_section_shape,      &ab_section_disc,    &ab_section_ring,
-    &ab_section_fill,     &ab_section_basis,    &ab_section_transfer,   &ab_section_surface, &ab_section_mesh,
-    &ab_section_patch,    &ab_section_arc,      &ab_section_fix,        &ab_section_motion,  &ab_section_contact,
-    &ab_section_load,     &ab_section_boundary, &ab_section_where,      &ab_section_monitor, &ab_section_history,
-    &ab_section_output,   &ab_section_expect,   &ab_section_trade,      &ab_section_ladder,  &ab_section_watchdog,
-    &ab_section_extremes, &ab_section_extreme,  &ab_section_checkpoint, &ab_section_table,   NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,
+                                         &ab_section_damping,
+                                         &ab_section_time,
+                                         &ab_section_stage,
+                                         &ab_section_calm,
+                                         &ab_section_until,
+                                         &ab_section_grid,
+                                         &ab_section_sides,
+                                         &ab_section_material,
+                                         &ab_section_body,
+                                         &ab_section_shape,
+                                         &ab_section_disc,
+                                         &ab_section_ring,
+                                         &ab_section_fill,
+                                         &ab_section_basis,
+                                         &ab_section_transfer,
+                                         &ab_section_surface,
+                                         &ab_section_mesh,
+                                         &ab_section_patch,
+                                         &ab_section_arc,
+                                         &ab_section_initial,
+                                         &ab_section_fix,
+                                         &ab_section_motion,
+                                         &ab_section_contact,
+                                         &ab_section_load,
+                                         &ab_section_boundary,
+                                         &ab_section_where,
+                                         &ab_section_monitor,
+                                         &ab_section_history,
+                                         &ab_section_output,
+                                         &ab_section_expect,
+                                         &ab_section_trade,
+                                         &ab_section_ladder,
+                                         &ab_section_watchdog,
+                                         &ab_section_extremes,
+                                         &ab_section_extreme,
+                                         &ab_section_checkpoint,
+                                         &ab_section_table,
+                                         NULL};

@@ -32,6 +32,24 @@ enum {
 };
 enum { DAMPING_LOCAL, DAMPING_UNTIL, DAMPING_KEYS };
 enum { TIME_END, TIME_DT, TIME_CFL, TIME_KEYS };
+enum {
+    STAGE_NAME,
+    STAGE_SCHEME,
+    STAGE_END,
+    STAGE_DURATION,
+    STAGE_DT,
+    STAGE_CFL,
+    STAGE_GRAVITY,
+    STAGE_RAMP,
+    STAGE_DAMPING,
+    STAGE_UNTIL,
+    STAGE_SIDES,
+    STAGE_DISPLACEMENTS,
+    STAGE_VELOCITIES,
+    STAGE_KEYS
+};
+enum { CALM_LOCAL, CALM_KINETIC, CALM_KEYS };
+enum { UNTIL_FORCE, UNTIL_ENERGY, UNTIL_MISSED, UNTIL_KEYS };
 enum { GRID_FROM, GRID_TO, GRID_CELL, GRID_SIDES, GRID_KEYS };
 enum { SIDES_LEFT, SIDES_RIGHT, SIDES_BOTTOM, SIDES_TOP, SIDES_KEYS }; /* in the order of AB_LEFT ... */
 enum { MATERIAL_MODEL, MATERIAL_DENSITY, MATERIAL_KEYS };
@@ -46,6 +64,7 @@ enum {
     BODY_F_BAR,
     BODY_SURFACE,
     BODY_VELOCITY,
+    BODY_INITIAL,
     BODY_GRAVITY,
     BODY_FORCE,
     BODY_MESH,
@@ -56,7 +75,8 @@ enum {
 enum { MESH_BOX, MESH_PATCH, MESH_FILE, MESH_ELEMENTS, MESH_GRADING, MESH_TYPE, MESH_F_BAR, MESH_HOURGLASS, MESH_KEYS };
 enum { PATCH_BOTTOM, PATCH_RIGHT, PATCH_TOP, PATCH_LEFT, PATCH_KEYS };
 enum { ARC_FROM, ARC_TO, ARC_CENTER, ARC_KEYS };
-enum { FIX_WHERE, FIX_VELOCITY, FIX_KEYS };
+enum { FIX_WHERE, FIX_VELOCITY, FIX_STAGES, FIX_KEYS };
+enum { INITIAL_STRESS, INITIAL_K0, INITIAL_SURCHARGE, INITIAL_TIME, INITIAL_KEYS };
 enum { MOTION_VELOCITY, MOTION_SPIN, MOTION_CENTER, MOTION_MASS, MOTION_INERTIA, MOTION_KEYS };
 enum { SHAPE_BOX, SHAPE_DISC, SHAPE_RING, SHAPE_POLYGON, SHAPE_HOLES, SHAPE_UNION, SHAPE_MESH, SHAPE_KEYS };
 enum { ROUND_CENTER, ROUND_RADIUS, ROUND_INNER, ROUND_KEYS };
@@ -66,7 +86,7 @@ enum { SURFACE_POINTS, SURFACE_KEYS };
 enum { TRANSFER_FLIP, TRANSFER_XPIC, TRANSFER_FMPM, TRANSFER_KEYS };
 enum { CONTACT_BODIES, CONTACT_ALGORITHM, CONTACT_RESPONSE, CONTACT_KEYS };
 enum { TABLE_FILE, TABLE_COLUMNS, TABLE_UNITS, TABLE_KEYS };
-enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_PRESSURE, LOAD_AT, LOAD_FORCE, LOAD_KEYS };
+enum { LOAD_BODY, LOAD_WHERE, LOAD_TRACTION, LOAD_PRESSURE, LOAD_AT, LOAD_FORCE, LOAD_STAGES, LOAD_KEYS };
 enum { BOUNDARY_ON, BOUNDARY_WHERE, BOUNDARY_PLUGIN, BOUNDARY_KEYS };
 enum { WHERE_ALL, WHERE_SIDE, WHERE_X, WHERE_Y, WHERE_KEYS };
 enum { MONITOR_NAME, MONITOR_BODY, MONITOR_CONTACT, MONITOR_VALUE, MONITOR_AT, MONITOR_OVER, MONITOR_WHERE, MONITOR_MINUS, MONITOR_KEYS };
@@ -113,8 +133,8 @@ extern const ab_section ab_section_top, ab_section_damping, ab_section_time, ab_
     ab_section_body, ab_section_shape, ab_section_disc, ab_section_ring, ab_section_fill, ab_section_basis, ab_section_transfer,
     ab_section_contact, ab_section_load, ab_section_where, ab_section_monitor, ab_section_history, ab_section_output, ab_section_expect,
     ab_section_surface, ab_section_mesh, ab_section_patch, ab_section_arc, ab_section_fix, ab_section_motion, ab_section_trade,
-    ab_section_boundary, ab_section_ladder, ab_section_watchdog, ab_section_extremes, ab_section_extreme, ab_section_checkpoint,
-    ab_section_table;
+    ab_section_boundary, ab_section_ladder, ab_section_stage, ab_section_calm, ab_section_until, ab_section_initial, ab_section_watchdog, ab_section_extremes,
+    ab_section_extreme, ab_section_checkpoint, ab_section_table;
 
 /* All of them, in the order of docs/scene.md; the last is NULL. */
 extern const ab_section *const ab_sections[];

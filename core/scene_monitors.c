@@ -185,6 +185,9 @@ void ab_scene_take_monitors(ab_scene_reader *r, const ab_node *node) {
 }
 
 static bool outflow(const ab_scene *scene) {
+    for (size_t k = 0; k < scene->stage_count; k++)
+        for (int s = 0; s < AB_SIDES; s++)
+            if (scene->stages[k].side[s] == AB_SIDE_OUTFLOW) return true;
     for (int s = 0; s < AB_SIDES; s++)
         if (scene->side[s] == AB_SIDE_OUTFLOW) return true;
     return false;
@@ -203,7 +206,8 @@ static const char *take_column(ab_scene_reader *r, const ab_node *node, const ch
         if (ab_scene_body_named(r, body, node->mark, path) < 0) return NULL;
     }
     const ab_word *word = ab_words_find(&ab_words_columns, last);
-    if (word != NULL && !(dot != NULL && ab_column_is_total(last)) && (strcmp(last, "outflow") != 0 || outflow(scene))) {
+    if (word != NULL && !(dot != NULL && ab_column_is_total(last)) && (strcmp(last, "outflow") != 0 || outflow(scene)) &&
+        (strcmp(last, "stage") != 0 || scene->stage_count > 0)) {
         expect->column = ab_reader_text(&r->base, text);
         return word->unit;
     }

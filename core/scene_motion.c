@@ -38,6 +38,7 @@ void ab_scene_take_fix(ab_scene_reader *r, const ab_node *node, const char *wher
         snprintf(entry, sizeof entry, "%.120s[%zu]", where, i);
         if (!ab_section_open(&r->base, &ab_section_fix, node->items[i], entry, v)) continue;
         if (v[FIX_WHERE] != NULL) ab_scene_take_where(r, v[FIX_WHERE], ab_where_join(path, entry, "where"), &fix->where);
+        if (v[FIX_STAGES] != NULL) fix->absent = ab_scene_take_absent(r, v[FIX_STAGES], ab_where_join(path, entry, "stages"));
         if (v[FIX_VELOCITY] == NULL) continue;
         if (take_velocity(r, &ab_section_fix.keys[FIX_VELOCITY], v[FIX_VELOCITY], entry, fix->has, fix->velocity) && !fix->has[0] &&
             !fix->has[1])

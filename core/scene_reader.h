@@ -25,6 +25,14 @@ void ab_scene_take_damping(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_checked(ab_scene_reader *r, const ab_node *node);
 void ab_scene_take_watchdog(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_time(ab_scene_reader *reader, const ab_node *node);
+void ab_scene_take_sides(ab_scene_reader *reader, const ab_node *node, const char *where, ab_side_kind side[AB_SIDES]);
+/* Stages, after time and grid; `root`: of the scene. */
+void ab_scene_take_stages(ab_scene_reader *reader, const ab_node *root, const ab_node *time, const ab_node *node);
+/* `stages:` of a load or a support: a bit for each stage in which it does not act. */
+uint64_t ab_scene_take_absent(ab_scene_reader *reader, const ab_node *node, const char *where);
+/* What a body begins with; its material is known. After bodies: does it go with gravity, motion and the first stage? */
+void ab_scene_take_initial(ab_scene_reader *reader, const ab_node *node, const char *where, ab_body_spec *body);
+void ab_scene_check_initial(ab_scene_reader *reader);
 void ab_scene_take_grid(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_materials(ab_scene_reader *reader, const ab_node *node);
 void ab_scene_take_bodies(ab_scene_reader *reader, const ab_node *node);

@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/plan.h"
 #include "core/progress.h"
+#include "core/stages.h"
 #include "core/stop.h"
 #include "core/watchdog.h"
 
@@ -44,6 +45,7 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
     s->energy_start = calloc(s->body_count + 1, sizeof *s->energy_start);
     s->motion = calloc(s->body_count + 1, sizeof *s->motion);
     s->limit = "none";
+    s->end = scene->time_end, s->fixed_dt = scene->time_dt, s->cfl = scene->time_cfl;
     omp_set_num_threads(options->threads);
     ab_status status = s->domains && s->energy && s->energy_start && s->motion
                            ? AB_OK
@@ -70,13 +72,20 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
         return status;
     }
     ab_schedule_look(s);
+    if (scene->stage_count) {
+        status = ab_stages_create(s, report);
+        if (status != AB_OK) {
+            ab_schedule_destroy(s);
+            return status;
+        }
+    }
     memcpy(s->energy_start, s->energy, s->body_count * sizeof *s->energy);
     s->total_start = s->total_now;
     for (size_t b = 0; b < s->body_count; ++b)
         for (int c = 0; c < 3; ++c) s->watch_momentum[c] += s->motion[b].momentum[c];
     s->dt = choose_dt(s);
     s->first_critical_dt = s->critical_dt;
-    if (!(scene->time_dt > 0.0) && isinf(s->critical_dt)) {
+    if (!(s->fixed_dt > 0.0) && isinf(s->critical_dt)) {
         ab_schedule_destroy(s);
         return ab_report_error(
             report, scene->mark_time,
@@ -99,7 +108,7 @@ void ab_schedule_destroy(ab_schedule *s) {
     ab_boundaries_destroy(s->boundaries);
     for (size_t b = 0; s->domains && b < s->body_count; ++b)
         if (s->domains[b]) s->domains[b]->ops->destroy(s->domains[b]);
-    free(s->domains), free(s->energy), free(s->energy_start), free(s->motion), free(s);
+    free(s->domains), free(s->energy), free(s->energy_start), free(s->motion), free(s->stages), free(s);
 }
 
 /* ---- one step ------------------------------------------------------------------------------------------------------------ */
@@ -127,8 +136,7 @@ void ab_schedule_look(ab_schedule *s) {
 
 /* dt of the next step: the scene's own, or by cfl so that the steps left are equal and end on time. *limit: what binds. */
 static double choose_dt(ab_schedule *s) {
-    const ab_scene *scene = s->scene;
-    const double left = scene->time_end - s->time;
+    const double left = s->end - s->time;
     double critical = INFINITY;
     for (size_t b = 0; b < s->body_count; ++b) {
         const char *limit = "";
@@ -142,11 +150,11 @@ static double choose_dt(ab_schedule *s) {
         if (dt < critical) critical = dt, s->limit = limit;
     }
     s->critical_dt = critical;
-    if (scene->time_dt > 0.0) {
-        const double whole = scene->time_dt;
+    if (s->fixed_dt > 0.0) {
+        const double whole = s->fixed_dt;
         return left < whole * (1.0 + 1e-9) ? left : whole;
     }
-    const double wanted = scene->time_cfl * critical;
+    const double wanted = s->cfl * critical;
     const double steps = ceil(left / wanted - 1e-9);
     return left / fmax(steps, 1.0);
 }
@@ -171,24 +179,24 @@ static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_rep
 
 /* Once: springs of contact are only known once bodies have met. */
 static void warn_of_dt(ab_schedule *s, ab_report *report) {
-    if (s->warned || !(s->scene->time_dt > s->critical_dt)) return;
+    if (s->warned || !(s->fixed_dt > s->critical_dt)) return;
     s->warned = true;
     ab_report_warning(report, s->scene->mark_time, "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
-                      s->time, s->scene->time_dt, s->critical_dt, s->limit);
+                      s->time, s->fixed_dt, s->critical_dt, s->limit);
 }
 
 /* A step by cfl that falls and falls: something in the scene runs away, or time does not go on any more. */
 static ab_status stop_collapse(const ab_schedule *s, ab_report *report) {
-    if (s->scene->time_dt > 0.0) return AB_OK;
-    const double wanted = s->scene->time_cfl * s->critical_dt;
-    if (wanted >= COLLAPSED * s->scene->time_cfl * s->first_critical_dt && s->time + wanted > s->time) return AB_OK;
+    if (s->fixed_dt > 0.0) return AB_OK;
+    const double wanted = s->cfl * s->critical_dt;
+    if (wanted >= COLLAPSED * s->cfl * s->first_critical_dt && s->time + wanted > s->time) return AB_OK;
     return ab_report_failure(
         report,
         "at %.9g s, after %ld steps, the step has collapsed to %.3g s, from %.3g s at the start, by this limit: %s. The "
         "run would not end; what was computed until now is in the results. Look at the last frames: something there is "
         "torn, crushed or thrown; use a smaller cfl, finer cells or elements, a material that hardens, or for a spring "
         "of contact stiffness_of: mass",
-        s->time, s->number, wanted, s->scene->time_cfl * s->first_critical_dt, s->limit);
+        s->time, s->number, wanted, s->cfl * s->first_critical_dt, s->limit);
 }
 
 /* What contact finders had to leave undecided. */
@@ -204,14 +212,22 @@ static void warn_of_failures(const ab_schedule *s, ab_report *report) {
                 totals[c].failures);
 }
 
+ab_status ab_schedule_next(ab_schedule *s, bool *datum, ab_report *report) {
+    *datum = false;
+    return s->stages ? ab_stages_next(s, datum, report) : AB_OK;
+}
+
 ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
+    bool datum;
+    AB_TRY(ab_schedule_next(s, &datum, report));
     const double dt = choose_dt(s);
     AB_TRY(stop_collapse(s, report));
-    if (s->interaction || s->boundaries) warn_of_dt(s, report);
+    if (s->interaction || s->boundaries || s->stages) warn_of_dt(s, report);
     ab_step step = {.time = s->time, .dt = dt, .number = s->number};
     for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);
     step.damping = s->time < scene->damping_until ? scene->damping_local : 0.0;
+    if (s->stages) ab_stages_fill(s, &step);
     bool any_early = false, any_remap = false;
     for (size_t b = 0; b < s->body_count; ++b) {
         any_early = any_early || s->domains[b]->ops->early;
@@ -251,11 +267,12 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     AB_TRY(status);
     s->dt = dt;
     s->number += 1;
-    s->time = scene->time_dt > 0.0 && fabs(dt - scene->time_dt) < 1e-9 * dt ? (double)s->number * scene->time_dt : s->time + dt;
-    if (scene->time_end - s->time < 1e-9 * dt) s->time = scene->time_end;
+    s->time = s->fixed_dt > 0.0 && fabs(dt - s->fixed_dt) < 1e-9 * dt ? s->begin + (double)(s->number - s->first_step) * s->fixed_dt
+                                                                      : s->time + dt;
+    if (s->end - s->time < 1e-9 * dt) s->time = s->end;
     s->half_done = false;
     ab_schedule_look(s);
-    return AB_OK;
+    return s->stages ? ab_stages_after(s, &step, report) : AB_OK;
 }
 
 void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
@@ -270,6 +287,7 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
                             .energy_start = s->energy_start,
                             .total = s->total,
                             .remainder = s->total_now - s->total_start};
+    if (s->stages) view->stage = s->stages->now;
     view->contacts = s->interaction ? s->interaction->totals(s->interaction) : NULL;
 }
 
@@ -277,11 +295,15 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
 
 /* Steps until the end, a failure or a signal. A run that is stopped between two steps leaves a checkpoint; one that fails within a step cannot. */
 static ab_status advance(ab_schedule *s, ab_results *results, ab_checkpoints *checkpoints, ab_progress *progress, ab_report *report) {
-    while (s->time < s->scene->time_end && !ab_stop_signal()) {
+    while (!ab_stages_done(s) && !ab_stop_signal()) {
+        ab_state_view view;
+        bool datum;
+        AB_TRY(ab_schedule_next(s, &datum, report));
+        ab_schedule_view(s, &view);
+        if (datum) AB_TRY(ab_results_datum(results, &view, report));
         const ab_status stepped = ab_schedule_step(s, report);
         if (stepped != AB_OK && !s->half_done) TIMED(PHASE_RESULTS, ab_checkpoints_step(checkpoints, s, results, true, report));
         AB_TRY(stepped);
-        ab_state_view view;
         ab_schedule_view(s, &view);
         ab_status status = AB_OK;
         TIMED(PHASE_RESULTS, status = ab_results_step(results, &view, report));
@@ -329,7 +351,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     ab_status status = ab_schedule_create(scene, options, &s, report);
     if (status == AB_OK && !from) {
         status = ab_doubts(s, report);
-        s->warned = scene->time_dt > s->critical_dt;
+        s->warned = s->fixed_dt > s->critical_dt;
         if (status != AB_OK) ab_schedule_destroy(s);
     }
     if (status != AB_OK) {

@@ -27,8 +27,10 @@ typedef struct ab_schedule { /* a scene on its way through time */
     struct ab_boundaries *boundaries; /* NULL without boundary plugins */
     double time, dt, critical_dt, first_critical_dt;
     long number;
-    const char *limit; /* what binds dt */
-    bool warned;       /* of a dt above the limit */
+    double begin, end, fixed_dt, cfl; /* of the stage, or of the run: s; dt where it is fixed, else 0; part of the critical one */
+    long first_step;                  /* number of the stage's first step */
+    const char *limit;                /* what binds dt */
+    bool warned;                      /* of a dt above the limit */
     bool half_done;    /* within a step, or after one that failed: no state to go on from */
     ab_energy *energy, *energy_start, total;
     ab_motion *motion;
@@ -38,11 +40,14 @@ typedef struct ab_schedule { /* a scene on its way through time */
     double watch_external, watch_potential; /* J: the largest so far; see watchdog.h */
     double watch_momentum[3];               /* kg m/s, of all bodies at the start */
     int watch_count;                        /* steps on end with too much energy made */
+    struct ab_stages *stages;               /* stages.h; NULL where the scene has none */
 } ab_schedule;
 
 ab_status ab_schedule_create(const ab_scene *, const ab_run_options *, ab_schedule **, ab_report *);
 void ab_schedule_destroy(ab_schedule *);
 ab_status ab_schedule_step(ab_schedule *, ab_report *);
+/* Before a step, for who has to know (it does so itself): the next stage, where one is over. datum: displacements are counted from here on. */
+ab_status ab_schedule_next(ab_schedule *, bool *datum, ab_report *);
 void ab_schedule_look(ab_schedule *); /* reads the ledgers */
 void ab_schedule_view(const ab_schedule *, ab_state_view *);
 

@@ -127,7 +127,7 @@ static void columns(ab_text *text, const ab_results *results) {
         ab_column_name(scene, c, name, sizeof name);
         ab_text_add(text, "%s\n    {\"name\": ", c > 0 ? "," : "");
         ab_text_add_escaped(text, name);
-        ab_text_add(text, ", \"unit\": \"%s\"}", ab_column_unit(c));
+        ab_text_add(text, ", \"unit\": \"%s\"}", ab_column_unit(scene, c));
     }
     for (size_t m = 0; m < scene->monitor_count; m++) {
         ab_text_add(text, ",\n    {\"name\": ");

@@ -104,6 +104,7 @@ static const ab_word columns[] = {
     {"t", "s", "time"},
     {"step", "1", "number of the step"},
     {"dt", "s", "time step"},
+    {"stage", "1", "number of the stage, from 1; only in scenes with stages"},
     {"kinetic", "J", "kinetic energy"},
     {"strain", "J", "strain energy"},
     {"potential", "J", "potential energy in gravity, from the start"},
@@ -145,7 +146,8 @@ const char *ab_component_names(const char *names, int components) {
 }
 
 bool ab_column_is_total(const char *name) {
-    return strcmp(name, "t") == 0 || strcmp(name, "step") == 0 || strcmp(name, "dt") == 0 || strcmp(name, "remainder") == 0;
+    return strcmp(name, "t") == 0 || strcmp(name, "step") == 0 || strcmp(name, "dt") == 0 || strcmp(name, "stage") == 0 ||
+           strcmp(name, "remainder") == 0;
 }
 
 bool ab_norm_needs_level(const char *name) {

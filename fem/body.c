@@ -63,6 +63,7 @@ static double critical_dt(ab_domain *domain, const char **limit) {
 static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report) {
     fem_body *body = (fem_body *)domain;
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
+    body->external_before = body->energy.external;
     fem_nodes_force(body);
     AB_TRY(fem_loads_add(body, step, report));
     AB_TRY(fem_body_force_add(body, step, report));
@@ -73,7 +74,7 @@ static ab_status trial(ab_domain *domain, const ab_step *step, ab_report *report
     fem_body *body = (fem_body *)domain;
     fem_nodes_trial(body, step);
     if (body->held_count) {
-        AB_TRY(fem_held_move(body, step->time + 0.5 * step->dt, report));
+        AB_TRY(fem_held_move(body, step->time + 0.5 * step->dt, step->settling, report));
         memset(body->impulse, 0, 2 * body->nodes * sizeof *body->impulse);
     }
     body->open = true;
@@ -84,6 +85,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     fem_body *body = (fem_body *)domain;
     body->open = false;
     fem_held_work(body, step);
+    if (step->measure) fem_nodes_balance(body, step);
     fem_nodes_finish(body, step);
     fem_loads_work(body, step);
     fem_body_force_work(body, step);
@@ -221,7 +223,11 @@ static const ab_domain_ops OPS = {.method = "finite-elements",
                                   .fields = fem_fields,
                                   .read = fem_read,
                                   .plan = plan,
-                                  .keep = fem_keep};
+                                  .keep = fem_keep,
+                                  .enter = fem_enter,
+                                  .rest = fem_rest,
+                                  .datum = fem_datum,
+                                  .balance = fem_balance};
 
 /* ---- making -------------------------------------------------------------------------------------------------------------- */
 
@@ -285,8 +291,7 @@ static void lay_out(fem_body *body) {
     body->gather_start[0] = 0;
 }
 
-/* The axis holds its nodes radially. */
-static bool on_axis(const fem_body *body, size_t node) {
+bool fem_on_axis(const fem_body *body, size_t node) {
     return body->element->axisymmetric && body->mesh->x[2 * node] <= 1e-9 * (body->mesh->high[0] - body->mesh->low[0]);
 }
 
@@ -305,7 +310,7 @@ static ab_status weigh(fem_body *body, ab_report *report) {
                                    body->domain.spec->name, (unsigned long long)(body->mesh->node_id ? body->mesh->node_id[i] : i),
                                    body->mesh->x[2 * i], body->mesh->x[2 * i + 1], body->mass[i]);
         body->inverse_mass[2 * i] = body->inverse_mass[2 * i + 1] = 1.0 / body->mass[i];
-        if (on_axis(body, i)) body->inverse_mass[2 * i] = 0.0;
+        if (fem_on_axis(body, i)) body->inverse_mass[2 * i] = 0.0;
     }
     return AB_OK;
 }
@@ -360,11 +365,11 @@ static ab_status make(fem_body *body, ab_report *report) {
         for (size_t c = 0; c < 2; ++c) {
             const double *x = body->mesh->x + 2 * i, v = ab_number_at(spec->velocity + c, 0.0, x[0], x[1], 0.0);
             AB_TRY(ab_number_finite(spec->velocity + c, v, 0.0, x, report, "bodies.%s.velocity[%zu]", spec->name, c));
-            body->velocity[2 * i + c] = c == 0 && on_axis(body, i) ? 0.0 : v;
+            body->velocity[2 * i + c] = c == 0 && fem_on_axis(body, i) ? 0.0 : v;
         }
-    AB_TRY(fem_held_move(body, 0.0, report));
+    AB_TRY(fem_held_move(body, 0.0, body->scene->stage_count > 0 && body->scene->stages[0].made, report));
     memcpy(body->old, body->velocity, 2 * body->nodes * sizeof *body->old);
-    fem_elements_start(body);
+    AB_TRY(fem_elements_start(body, body->outer->faces, report));
     fem_critical(body, true);
     fem_nodes_measure(body);
     if (wants_grid(body)) AB_TRY(fem_inner_create(body, report));

@@ -15,6 +15,8 @@
 #include "fem/mesh.h"
 #include "fem/trace.h"
 
+struct ab_initial;
+
 enum {
     FEM_ROW_STRESS = 0, /* xx, yy, zz, xy, Pa */
     FEM_ROW_MASS = 4,   /* kg */
@@ -131,8 +133,11 @@ typedef struct fem_body {
     size_t edges_count;
     double *body_force; /* N: pairs, in this step; NULL without one */
 
-    ab_energy energy; /* totals so far */
-    double ahead;     /* J: what energy.strain has from the second half of the step */
+    ab_energy energy;           /* totals so far */
+    double external_before;     /* J: energy.external at the start of the step */
+    double unbalanced, applied; /* N: of the last step that measured them */
+    double *datum;              /* m, pairs: where displacements are counted from, as drawn; NULL: from the mesh as drawn */
+    double ahead;               /* J: what energy.strain has from the second half of the step */
     ab_motion motion;
     double reaction[3]; /* of the last step */
 
@@ -157,17 +162,19 @@ static inline unsigned long long fem_element_number(const fem_body *body, size_t
     return body->mesh->element_id ? (unsigned long long)body->mesh->element_id[element] : (unsigned long long)element;
 }
 void *fem_take(fem_body *, size_t count, size_t size);              /* as ab_memory_take, counted; NULL when there is no memory */
+bool fem_on_axis(const fem_body *, size_t node);                    /* which holds its nodes radially */
 void fem_middle(const fem_body *, size_t element, double place[2]); /* of an element, in the scene's coordinates */
 
 /* step.c: elements from the start of a step to its end */
 void fem_gather(const fem_body *, size_t block, const double *pairs, double (*rows)[8]); /* of nodes, to the lanes of a block */
-void fem_elements_start(fem_body *); /* volumes, stress, states and forces before the first step */
+ab_status fem_elements_start(fem_body *, const fem_faces *, ab_report *); /* volumes, stress, states and forces before the first step */
 /* Strain from x_start to x, stress, forces; *culprit: the first element in trouble. */
 fem_trouble fem_elements_step(fem_body *, const ab_step *, size_t *culprit);
-void fem_nodes_force(fem_body *);                   /* force = minus the forces of the elements */
-void fem_nodes_trial(fem_body *, const ab_step *);  /* gravity, trial velocities, held directions */
-void fem_nodes_finish(fem_body *, const ab_step *); /* damping, work, motion, new places */
-void fem_nodes_measure(fem_body *);                 /* motion and kinetic energy as they are */
+void fem_nodes_force(fem_body *);                    /* force = minus the forces of the elements */
+void fem_nodes_trial(fem_body *, const ab_step *);   /* gravity, trial velocities, held directions */
+void fem_nodes_finish(fem_body *, const ab_step *);  /* damping, work, motion, new places */
+void fem_nodes_measure(fem_body *);                  /* motion and kinetic energy as they are */
+void fem_nodes_balance(fem_body *, const ab_step *); /* unbalanced, applied: after contact, before damping */
 /* critical.c: looks again at blocks that have changed shape or grown stiffer; all of them with `all`. */
 void fem_critical(fem_body *, bool all);
 
@@ -204,13 +211,25 @@ typedef struct fem_face_point {
 fem_face_point fem_face_point_on(const double *pairs, const uint32_t node[3], double s);
 ab_status fem_loads_create(fem_body *, const fem_faces *, ab_report *);
 ab_status fem_held_create(fem_body *, const fem_faces *, ab_report *);
+/* Supports of a stage; fem_held_create has looked for mistakes, and taken memory for any. */
+ab_status fem_held_choose(fem_body *, const fem_faces *, size_t stage, ab_report *);
 ab_status fem_loads_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
 void fem_loads_work(fem_body *, const ab_step *);                  /* energy.external */
 /* body_force.c: all of it nothing where the body has none */
 ab_status fem_body_force_add(fem_body *, const ab_step *, ab_report *); /* to force; AB_FAILED: a formula has no finite value */
 void fem_body_force_work(fem_body *, const ab_step *);                  /* energy.external */
-ab_status fem_held_move(fem_body *, double time, ab_report *);          /* their velocities at a time, to velocity */
-void fem_held_work(fem_body *, const ab_step *);                        /* force and work of the supports */
+ab_status fem_held_move(fem_body *, double time, bool settling,
+                        ab_report *);            /* their velocities at a time, to velocity; settling: they stand still */
+void fem_held_work(fem_body *, const ab_step *); /* force and work of the supports */
+
+/* stages.c */
+ab_status fem_enter(ab_domain *, const ab_stage_spec *, size_t stage, ab_report *);
+void fem_rest(ab_domain *, const ab_step *);
+ab_status fem_datum(ab_domain *, ab_report *);
+void fem_balance(const ab_domain *, double *unbalanced, double *applied);
+/* initial.c: the stress that the scene begins with; *initial NULL: the material's own */
+ab_status fem_initial_open(const fem_body *, const fem_faces *, struct ab_initial **, ab_report *);
+ab_status fem_initial_point(fem_body *, const struct ab_initial *, size_t block, int point, ab_material_start *, ab_report *);
 
 /* boundary.c: the outer faces under boundary plugins; nothing where the body has none */
 ab_status fem_edges_create(fem_body *, const fem_faces *, ab_report *);

@@ -115,7 +115,8 @@ ab_status fem_read(const ab_domain *domain, const char *field, double *values, a
     } else if (!strcmp(field, "position")) {
         for (size_t k = 0; k < 2 * n; ++k) values[k] = body->x[k] + body->origin[k % 2];
     } else if (!strcmp(field, "displacement")) {
-        for (size_t k = 0; k < 2 * n; ++k) values[k] = body->x[k] - (body->mesh->x[k] - body->origin[k % 2]);
+        for (size_t k = 0; k < 2 * n; ++k)
+            values[k] = body->x[k] - ((body->datum ? body->datum[k] : body->mesh->x[k]) - body->origin[k % 2]);
     } else if (!strcmp(field, "velocity")) {
         memcpy(values, body->velocity, 2 * n * sizeof *values);
     } else if (!strcmp(field, "mass")) {

@@ -4,6 +4,16 @@
 #include "fem/domain.h"
 #include "fem/rigid.h"
 
+/* Where displacements are counted from, where a stage has set it. */
+static void keep_datum(fem_body *body, ab_checkpoint *c) {
+    bool set = body->datum != NULL;
+    if (!ab_keep_flags(c, "datum_set", &set, 1) || !set) return;
+    if (!body->datum && fem_datum(&body->domain, ab_checkpoint_report(c)) != AB_OK)
+        ab_checkpoint_refuse(c, "no memory for %zu nodes", body->nodes);
+    else
+        ab_keep_doubles(c, "datum", body->datum, 2 * body->nodes);
+}
+
 void fem_keep(ab_domain *domain, ab_checkpoint *c) {
     fem_body *body = (fem_body *)domain;
     const size_t pairs = 2 * body->nodes, blocks = body->blocks;
@@ -28,6 +38,7 @@ void fem_keep(ab_domain *domain, ab_checkpoint *c) {
                       ab_keep_plugin(c, "material", &body->material->loaded->class_, body->self);
     if (good && body->slowest_element >= body->elements)
         ab_checkpoint_refuse(c, "the elements of body '%s' are damaged", domain->spec->name);
+    if (good && body->scene->stage_count > 0) keep_datum(body, c);
     if (good && body->trace) fem_inner_keep(body, c);
 }
 
@@ -44,6 +55,8 @@ void rigid_keep(ab_domain *domain, ab_checkpoint *c) {
                       ab_keep_doubles(c, "force", body->force, 3) && ab_keep_doubles(c, "weight", body->weight, 2) &&
                       ab_keep_doubles(c, "reaction", body->reaction, 3) && ab_keep_struct(c, "energy", &body->energy) &&
                       ab_keep_struct(c, "motion", &body->motion) && ab_keep_flags(c, "moved", &moved, 1);
+    if (good && body->scene->stage_count > 0 && ab_keep_flags(c, "has_datum", &body->has_datum, 1))
+        ab_keep_doubles(c, "datum", body->datum, 3);
     if (good && ab_checkpoint_loads(c)) /* what finders see is that of the start */
         body->moved = moved || before[0] != body->centre[0] || before[1] != body->centre[1] || before[2] != body->angle;
 }

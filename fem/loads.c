@@ -149,6 +149,10 @@ ab_status fem_loads_add(fem_body *body, const ab_step *step, ab_report *report) 
     for (size_t k = 0; k < body->load_count; ++k) {
         fem_load *load = body->loads + k;
         const ab_load_spec *spec = body->scene->loads + load->spec;
+        if (spec->absent >> step->stage & 1) {
+            memset(load->force, 0, sizeof load->force);
+            continue;
+        }
         if (k == 0 || load->spec != load[-1].spec) {
             same = uniform(spec);
             for (int c = 0; c < 2 && same; ++c) {
@@ -202,6 +206,7 @@ static void warn_conflict(const fem_body *body, size_t entry, const uint32_t *fi
         const size_t before = fix[d] ? fix[d] - 1 : SIZE_MAX;
         if (before == SIZE_MAX || !last->has[d % 2] || (other != SIZE_MAX && before != other)) continue;
         if (!fem_where_node(&last->where, body->mesh, faces, (uint32_t)(d / 2))) continue;
+        if (!~(last->absent | spec->fix[before].absent)) continue; /* never both */
         if (before != other && same_velocity(spec->fix[before].velocity + d % 2, last->velocity + d % 2, body->scene->time_end)) continue;
         if (other == SIZE_MAX) other = before, node = d / 2, direction = (int)(d % 2);
         many += (int)(d % 2) == direction;
@@ -215,6 +220,40 @@ static void warn_conflict(const fem_body *body, size_t entry, const uint32_t *fi
         "holds, fix[%zu]: leave the node out of one of them, or write null for that direction",
         spec->name, entry, many, many == 1 ? "" : "s", direction ? 'y' : 'x', other, line, body->mesh->x[2 * node],
         body->mesh->x[2 * node + 1], entry);
+}
+
+static void hold(fem_body *body, size_t d, uint32_t fix) {
+    body->held[body->held_count++] = (fem_held){.node = (uint32_t)(d / 2), .component = (uint32_t)(d % 2), .fix = fix};
+    body->inverse_mass[d] = 0.0;
+}
+
+/* True where not all of them hold in all stages. */
+static bool differs(const ab_body_spec *spec) {
+    for (size_t f = 0; f < spec->fix_count; ++f)
+        if (spec->fix[f].absent) return true;
+    return false;
+}
+
+ab_status fem_held_choose(fem_body *body, const fem_faces *faces, size_t stage, ab_report *report) {
+    const ab_body_spec *spec = body->domain.spec;
+    if (!differs(spec)) return AB_OK;
+    uint32_t *fix = ab_memory_take(2 * body->nodes * sizeof *fix); /* as in fem_held_create */
+    if (!fix) return ab_report_failure(report, "body '%s': no memory for the nodes it is fixed at", spec->name);
+    for (size_t k = 0; k < body->held_count; ++k) {
+        const size_t i = body->held[k].node;
+        body->inverse_mass[2 * i + body->held[k].component] =
+            body->held[k].component == 0 && fem_on_axis(body, i) ? 0.0 : 1.0 / body->mass[i];
+    }
+    for (size_t f = 0; f < spec->fix_count; ++f)
+        for (size_t i = 0; !(spec->fix[f].absent >> stage & 1) && i < body->nodes; ++i)
+            if (fem_where_node(&spec->fix[f].where, body->mesh, faces, (uint32_t)i))
+                for (size_t c = 0; c < 2; ++c)
+                    if (spec->fix[f].has[c]) fix[2 * i + c] = (uint32_t)f + 1;
+    body->held_count = 0;
+    for (size_t d = 0; d < 2 * body->nodes; ++d)
+        if (fix[d]) hold(body, d, fix[d] - 1);
+    ab_memory_give(fix, 2 * body->nodes * sizeof *fix);
+    return AB_OK;
 }
 
 ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *report) {
@@ -244,21 +283,18 @@ ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *rep
         body->impulse = fem_take(body, 2 * body->nodes, sizeof *body->impulse);
         if (!body->held || !body->impulse) status = ab_report_failure(report, "body '%s': no memory for %zu supports", spec->name, count);
         for (size_t d = 0; status == AB_OK && d < 2 * body->nodes; ++d)
-            if (fix[d]) {
-                body->held[body->held_count++] = (fem_held){.node = (uint32_t)(d / 2), .component = (uint32_t)(d % 2), .fix = fix[d] - 1};
-                body->inverse_mass[d] = 0.0;
-            }
+            if (fix[d]) hold(body, d, fix[d] - 1);
     }
     ab_memory_give(fix, 2 * body->nodes * sizeof *fix);
-    return status;
+    return status == AB_OK && differs(spec) ? fem_held_choose(body, faces, 0, report) : status;
 }
 
-ab_status fem_held_move(fem_body *body, double time, ab_report *report) {
+ab_status fem_held_move(fem_body *body, double time, bool settling, ab_report *report) {
     const ab_body_spec *spec = body->domain.spec;
     for (size_t f = 0; f < 2 * spec->fix_count; ++f)
         if (spec->fix[f / 2].has[f % 2]) {
             const ab_number *number = spec->fix[f / 2].velocity + f % 2;
-            body->given[f] = ab_number_at(number, time, 0.0, 0.0, 0.0);
+            body->given[f] = settling ? 0.0 : ab_number_at(number, time, 0.0, 0.0, 0.0);
             AB_TRY(
                 ab_number_finite(number, body->given[f], time, NULL, report, "bodies.%s.fix[%zu].velocity[%zu]", spec->name, f / 2, f % 2));
         }

@@ -80,7 +80,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
     .method = "rigid", .destroy = destroy, .critical_dt = critical_dt, .begin = rigid_begin, .trial = rigid_trial, .finish = rigid_finish, \
     .ledger = ledger, .node_tiles = rigid_node_tiles, .trace = rigid_trace, .dofs = dofs, .faces = rigid_faces,                            \
     .surface_points = rigid_surface_points, .modulus = modulus, .count = rigid_count, .fields = rigid_fields, .read = rigid_read,          \
-    .plan = plan, .keep = rigid_keep
+    .plan = plan, .keep = rigid_keep, .rest = rigid_rest, .datum = rigid_datum, .balance = rigid_balance
 static const ab_domain_ops OPS_FREE = {SAME_FOR_BOTH};
 static const ab_domain_ops OPS_GIVEN = {SAME_FOR_BOTH, .reaction = reaction};
 static const ab_domain_ops OPS_MESH_FREE = {SAME_FOR_BOTH, .cells = rigid_cells};

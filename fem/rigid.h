@@ -62,6 +62,9 @@ typedef struct rigid_body {
     double force[3];                         /* N, N m about the reference: gravity and loads in this step */
     double weight[2];                        /* N: gravity's part of it */
     double reaction[3];                      /* N, N m about the scene's origin, of the last step */
+    double unbalanced, applied;              /* N: of the last step that measured them */
+    bool has_datum;                          /* displacements are counted from datum: centre of mass, m from the grid's corner, and angle */
+    double datum[3];
 
     ab_energy energy;
     ab_motion motion;
@@ -103,6 +106,10 @@ ab_status rigid_motion_create(rigid_body *, ab_report *);
 ab_status rigid_begin(ab_domain *, const ab_step *, ab_report *);
 ab_status rigid_trial(ab_domain *, const ab_step *, ab_report *);
 ab_status rigid_finish(ab_domain *, const ab_step *, ab_report *);
+
+void rigid_rest(ab_domain *, const ab_step *);
+ab_status rigid_datum(ab_domain *, ab_report *);
+void rigid_balance(const ab_domain *, double *unbalanced, double *applied);
 
 /* rigid_surface.c: what finders see */
 ab_status rigid_surface_create(rigid_body *, ab_report *);

@@ -12,12 +12,12 @@ static const double SAME_PLACE = 1e-12, RIGID_FIELD = 1e-9; /* of the body's siz
 
 static double formula(const ab_number *number, double time) { return ab_number_at(number, time, 0.0, 0.0, 0.0); }
 
-/* A component of the given velocity, m/s, or (2) the given spin, 1/s. */
-static ab_status motion_at(const rigid_body *body, int component, double time, double *value, ab_report *report) {
+/* A component of the given velocity, m/s, or (2) the given spin, 1/s; none while the scene settles. */
+static ab_status motion_at(const rigid_body *body, int component, double time, bool settling, double *value, ab_report *report) {
     const ab_body_spec *spec = body->domain.spec;
     const ab_number *number = component < 2 ? spec->motion.velocity + component : &spec->motion.spin;
     static const char *const NAME[3] = {"velocity[0]", "velocity[1]", "spin"};
-    *value = formula(number, time);
+    *value = settling ? 0.0 : formula(number, time);
     return ab_number_finite(number, *value, time, NULL, report, "bodies.%s.motion.%s", spec->name, NAME[component]);
 }
 
@@ -135,10 +135,11 @@ ab_status rigid_motion_create(rigid_body *body, ab_report *report) {
         body->reference[c] = body->centre[c] - body->offset[c];
     }
     AB_TRY(start_velocity(body, reference, report));
-    if (body->held_spin) AB_TRY(motion_at(body, 2, 0.0, &body->spin, report));
+    const bool settling = body->scene->stage_count > 0 && body->scene->stages[0].made;
+    if (body->held_spin) AB_TRY(motion_at(body, 2, 0.0, settling, &body->spin, report));
     for (int c = 0; c < 2; ++c)
         if (body->held[c]) {
-            AB_TRY(motion_at(body, c, 0.0, body->velocity + c, report));
+            AB_TRY(motion_at(body, c, 0.0, settling, body->velocity + c, report));
             if (!body->hinged) body->velocity[c] += c ? body->spin * body->arm[0] : -body->spin * body->arm[1];
         }
     AB_TRY(find_loads(body, report));
@@ -154,7 +155,7 @@ static void load_of(const rigid_body *body, size_t k, const ab_step *step, doubl
     rigid_place(body, load->at, arm);
     for (int c = 0; c < 2; ++c) {
         arm[c] -= body->reference[c];
-        force[c] = formula(load->force + c, step->time + 0.5 * step->dt);
+        force[c] = load->absent >> step->stage & 1 ? 0.0 : formula(load->force + c, step->time + 0.5 * step->dt);
     }
 }
 
@@ -188,14 +189,14 @@ ab_status rigid_trial(ab_domain *domain, const ab_step *step, ab_report *report)
     rigid_body *body = (rigid_body *)domain;
     const double middle = step->time + 0.5 * step->dt, dt = step->dt;
     const double *r = body->offset;
-    if (body->held_spin) AB_TRY(motion_at(body, 2, middle, &body->spin, report));
+    if (body->held_spin) AB_TRY(motion_at(body, 2, middle, step->settling, &body->spin, report));
     const double turned = body->angle + dt * body->spin, c1 = cos(turned), s1 = sin(turned);
     for (int c = 0; c < 2; ++c) {
         if (!body->held[c]) {
             body->velocity[c] = body->old[c] + dt * body->force[c] / body->mass;
             continue;
         }
-        AB_TRY(motion_at(body, c, middle, body->velocity + c, report));
+        AB_TRY(motion_at(body, c, middle, step->settling, body->velocity + c, report));
         if (body->hinged || (body->arm[0] == 0.0 && body->arm[1] == 0.0)) continue;
         /* the centre of mass goes straight to where the given place and angle put it */
         const double arm = c ? s1 * body->arm[0] + c1 * body->arm[1] : c1 * body->arm[0] - s1 * body->arm[1];
@@ -259,10 +260,50 @@ static void book_turning(rigid_body *body, const ab_step *step, const double aft
     body->energy.external += kinetic(body, after) - before;
 }
 
+/* Forces alone; moments have another unit, and a body whose force is balanced and whose moment is not moves soon enough to be told by its kinetic energy. */
+static void look_at_balance(rigid_body *body, const ab_step *step) {
+    double out[2], from_outside[2];
+    for (int c = 0; c < 2; ++c) {
+        out[c] = body->held[c] ? 0.0 : body->mass * (body->velocity[c] - body->old[c]) / step->dt;
+        from_outside[c] = body->held[c] ? 0.0 : body->force[c];
+    }
+    body->unbalanced = hypot(out[0], out[1]);
+    body->applied = hypot(from_outside[0], from_outside[1]);
+}
+
+void rigid_balance(const ab_domain *domain, double *unbalanced, double *applied) {
+    *unbalanced = ((const rigid_body *)domain)->unbalanced;
+    *applied = ((const rigid_body *)domain)->applied;
+}
+
+void rigid_rest(ab_domain *domain, const ab_step *step) {
+    rigid_body *body = (rigid_body *)domain;
+    const double before = body->energy.kinetic;
+    double offset[2] = {0.0, 0.0}, v[2];
+    if (body->hinged) rigid_turn(body, body->arm, offset);
+    velocity_of_mass(body, offset, v);
+    const double weight = 0.5 * step->dt * (body->weight[0] * v[0] + body->weight[1] * v[1]); /* as of points: mpm/stages.c */
+    for (int c = 0; c < 2; ++c)
+        if (!body->held[c]) body->velocity[c] = 0.0;
+    if (!body->held_spin) body->spin = 0.0;
+    measure(body, offset);
+    body->energy.damping += before - body->energy.kinetic + weight;
+    body->energy.potential -= weight;
+}
+
+ab_status rigid_datum(ab_domain *domain, ab_report *report) {
+    (void)report;
+    rigid_body *body = (rigid_body *)domain;
+    body->has_datum = true;
+    body->datum[0] = body->centre[0], body->datum[1] = body->centre[1], body->datum[2] = body->angle;
+    return AB_OK;
+}
+
 ab_status rigid_finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     rigid_body *body = (rigid_body *)domain;
     const double dt = step->dt;
     body->open = false;
+    if (step->measure) look_at_balance(body, step);
     if (step->damping > 0.0) {
         const double *r = body->offset, inertia = body->inertia + body->mass * (r[0] * r[0] + r[1] * r[1]);
         for (int c = 0; c < 2; ++c)
@@ -280,7 +321,7 @@ ab_status rigid_finish(ab_domain *domain, const ab_step *step, ab_report *report
     for (int c = 0; c < 2; ++c) {
         const bool apart = body->arm[0] != 0.0 || body->arm[1] != 0.0;
         if (body->held[c] && apart) {
-            body->given[c] += dt * formula(domain->spec->motion.velocity + c, step->time + 0.5 * dt);
+            if (!step->settling) body->given[c] += dt * formula(domain->spec->motion.velocity + c, step->time + 0.5 * dt);
             body->centre[c] = body->given[c] + arm[c];
         } else {
             body->centre[c] += dt * body->velocity[c];

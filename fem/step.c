@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/initial.h"
 #include "fem/domain.h"
 
 /* ---- elements ------------------------------------------------------------------------------------------------------------ */
@@ -115,30 +116,44 @@ fem_trouble fem_elements_step(fem_body *body, const ab_step *step, size_t *culpr
     return (fem_trouble)(first % 4);
 }
 
-void fem_elements_start(fem_body *body) {
+static ab_status start_elements(fem_body *body, const struct ab_initial *initial, ab_report *report) {
     const fem_element *element = body->element;
     const fem_rows rows = body->rows;
+    ab_material_start own = body->start;
     for (size_t b = 0; b < body->blocks; ++b) {
         fem_block block __attribute__((aligned(64)));
         memset(&block, 0, sizeof block);
         fem_gather(body, b, body->x, block.start);
         memcpy(block.end, block.start, sizeof block.end);
-        for (int q = 0; q < element->gauss; ++q) memcpy(block.stress[q], body->start.stress, sizeof block.stress[q]);
         element->strain(&block, &body->elastic, body->f_bar, body->hourglass);
         v8 volume = v8_set(0.0);
         for (int q = 0; q < element->gauss; ++q) {
             double *point = fem_gauss_rows(body, b, q);
+            if (initial) AB_TRY(fem_initial_point(body, initial, b, q, &own, report));
+            memcpy(block.stress[q], own.stress, sizeof block.stress[q]);
             volume += v8_load(block.volume[q]);
-            memcpy(point + 8 * FEM_ROW_STRESS, body->start.stress, sizeof body->start.stress);
+            memcpy(point + 8 * FEM_ROW_STRESS, own.stress, sizeof own.stress);
             v8_store(point + 8 * FEM_ROW_MASS, v8_set(body->material->density) * v8_load(block.volume[q]));
             if (rows.gradient >= 0)
                 v8_store(point + 8 * rows.gradient, v8_set(1.0)), v8_store(point + 8 * (rows.gradient + 3), v8_set(1.0));
             if (rows.gradient >= 0 && element->axisymmetric) v8_store(point + 8 * (rows.gradient + 4), v8_set(1.0));
-            for (int s = 0; s < rows.states; ++s) memcpy(point + 8 * (rows.state + s), body->start.state[s], sizeof body->start.state[s]);
+            for (int s = 0; s < rows.states; ++s) memcpy(point + 8 * (rows.state + s), own.state[s], sizeof own.state[s]);
         }
         v8_store(body->volume_start + 8 * b, volume);
         leave_force(body, b, &block);
     }
+    return AB_OK;
+}
+
+ab_status fem_elements_start(fem_body *body, const fem_faces *faces, ab_report *report) {
+    struct ab_initial *initial = NULL;
+    AB_TRY(fem_initial_open(body, faces, &initial, report));
+    const double before = body->start.wave_speed;
+    const ab_status status = start_elements(body, initial, report);
+    ab_initial_close(initial);
+    AB_TRY(status);
+    if (body->start.wave_speed == before) return AB_OK;
+    return ab_material_tangent(body->material, &body->service, body->self, &body->start, &body->elastic.lambda, &body->elastic.mu, report);
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------------------------------- */
@@ -181,6 +196,25 @@ static double damp(const fem_body *body, size_t i, double factor) {
         taken -= body->mass[i] * change * 0.5 * (old + v + change);
     }
     return taken;
+}
+
+void fem_nodes_balance(fem_body *body, const ab_step *step) {
+    const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
+    body->unbalanced = body->applied = 0.0;
+    for (size_t i = 0; i < body->nodes; ++i) {
+        double out[2], weight[2];
+        for (size_t c = 0; c < 2; ++c) {
+            const double mass = body->inverse_mass[2 * i + c] > 0.0 ? body->mass[i] : 0.0;
+            out[c] = mass * (body->velocity[2 * i + c] - body->old[2 * i + c]) / step->dt;
+            weight[c] = mass * g[c];
+        }
+        body->unbalanced += hypot(out[0], out[1]);
+        body->applied += hypot(weight[0], weight[1]);
+        if (body->domain.spec->has_force) body->applied += hypot(body->body_force[2 * i], body->body_force[2 * i + 1]);
+    }
+    for (size_t k = 0; k < body->load_count; ++k)
+        for (int a = 0; a < 3 && body->loads[k].node[a] != FEM_NONE; ++a)
+            body->applied += hypot(body->loads[k].force[a][0], body->loads[k].force[a][1]);
 }
 
 /* Sums over a run of nodes. */

@@ -44,7 +44,7 @@ static void destroy(ab_domain *domain) {
     mpm_outline_destroy(body->outline);
     mpm_body_force_destroy(body);
     mpm_edges_destroy(body);
-    free(body->loads), free(body->slot), free(body->birth), free(body->fields), free(body);
+    free(body->loads), free(body->slot), free(body->birth), free(body->datum), free(body->fields), free(body);
 }
 
 static double critical_dt(ab_domain *domain, const char **limit) {
@@ -70,6 +70,7 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     }
     if (!body->scattered) scatter_all(body);
     body->scattered = false;
+    body->external_before = body->energy.external;
     AB_TRY(mpm_body_force_find(body, step, report));
     if (body->update != MPM_USF) {
         mpm_loads_scatter(body, step);
@@ -152,7 +153,7 @@ static ab_status look_outside(mpm_body *body, const ab_step *step, ab_report *re
                                      "body '%s': point %llu has no finite place any more at t = %.9g s (step %ld): the run has blown up; "
                                      "use a smaller dt; of bases and updates gimp and musl are the safest",
                                      body->domain.spec->name, (unsigned long long)body->ids[slot], step->time + step->dt, step->number);
-        if (body->scene->side[side] != AB_SIDE_OUTFLOW)
+        if (body->side[side] != AB_SIDE_OUTFLOW)
             return ab_report_failure(report,
                                      "body '%s': point %llu left the grid through its %s side at (%.6g, %.6g) m, velocity (%.4g, %.4g) "
                                      "m/s, t = %.9g s (step %ld); make the grid larger, "
@@ -211,6 +212,7 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
 
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
+    if (step->measure) mpm_measure(body, step);
     if (step->damping > 0.0) {
         mpm_light_quiet(body);
         body->energy.damping += mpm_grid_damp(body, step->damping);
@@ -288,7 +290,7 @@ static double modulus(const ab_domain *domain) { return ((const mpm_body *)domai
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
     .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .edges = mpm_edges, .read = mpm_read, .plan = mpm_plan,  \
-    .keep = mpm_keep
+    .keep = mpm_keep, .enter = mpm_enter, .rest = mpm_rest, .datum = mpm_datum, .balance = mpm_balance
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
@@ -362,6 +364,7 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
                                .dimension = 2,
                                .index = index};
     body->scene = scene;
+    memcpy(body->side, scene->side, sizeof body->side);
     mpm_transfer_choose(body);
     body->contiguous = spec->contiguous;
     body->f_bar = spec->f_bar;
@@ -396,7 +399,7 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
-    if (status == AB_OK) status = mpm_material_start(body, report);
+    if (status == AB_OK) status = mpm_material_start(body, fill, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
     if (status == AB_OK) status = mpm_edges_create(body, fill, report);
     if (status == AB_OK) status = mpm_outline_create(body, fill, report);

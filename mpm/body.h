@@ -165,6 +165,7 @@ struct mpm_body {
     bool axisymmetric; /* x is the radius, points are rings: volumes in m3, masses and forces of the whole ring */
     ab_f_bar f_bar;
     int threads;
+    ab_side_kind side[AB_SIDES];             /* of the grid, in this stage */
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 
     mpm_rows rows;
@@ -178,6 +179,7 @@ struct mpm_body {
     size_t born;   /* ids given out: 0 .. born-1 */
     double area;   /* m2, of the body at the start, in the plane */
     double *birth; /* (x, y) by id at the start, from the grid's corner; only when displacements are asked for */
+    double *datum; /* the same of where displacements are counted from; NULL: from the start */
 
     mpm_tile *tiles;
     uint64_t *keys; /* of the tiles, ascending */
@@ -219,8 +221,10 @@ struct mpm_body {
     size_t body_force_capacity;
     uint32_t *slot; /* by id, block*8 + lane, UINT32_MAX: has left; only with loads or an outline */
 
-    ab_energy energy;   /* totals so far */
-    double last_strain; /* J: what the last step added to energy.strain */
+    ab_energy energy;           /* totals so far */
+    double last_strain;         /* J: what the last step added to energy.strain */
+    double external_before;     /* J: energy.external at the start of the step */
+    double unbalanced, applied; /* N: of the last step that measured them */
     ab_motion motion;
 
     ab_field *fields; /* that can be written */
@@ -253,7 +257,8 @@ static inline size_t mpm_patch_doubles(const mpm_body *body) { return 8 * (size_
 static inline double *mpm_block(const mpm_body *body, size_t block) { return body->blocks + block * 8 * (size_t)body->rows.count; }
 
 /* material.c */
-ab_status mpm_material_start(mpm_body *, ab_report *); /* the material's instance; stress and states of the points at the start */
+ab_status mpm_material_start(mpm_body *, const ab_fill *,
+                             ab_report *); /* the material's instance; stress and states of the points at the start */
 
 /* transfer.c */
 void mpm_transfer_choose(mpm_body *);               /* from the scene: before the rows are planned */
@@ -269,6 +274,7 @@ void mpm_volumetric_stress(
     mpm_body *); /* after it: the stress of the points gets the average of the mean stress, theirs is kept in its row */
 
 /* tiles.c */
+void mpm_tiles_hold(mpm_body *); /* sides have changed */
 ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
                           ab_report *);                                  /* the tiles of `filled` (ascending) and their neighbours */
 long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);    /* place, or -1 */
@@ -319,11 +325,21 @@ size_t mpm_edges_bytes(const mpm_body *);
 bool mpm_edges_keep(mpm_body *, struct ab_checkpoint *);
 void mpm_edges_destroy(mpm_body *);
 
+double mpm_loads_size(const mpm_body *); /* N: sizes of the forces of this step, added up */
+
+/* stages.c */
+ab_status mpm_enter(ab_domain *, const ab_stage_spec *, size_t stage, ab_report *);
+void mpm_rest(ab_domain *, const ab_step *);
+ab_status mpm_datum(ab_domain *, ab_report *);
+void mpm_measure(mpm_body *, const ab_step *); /* after contact, before damping */
+void mpm_balance(const ab_domain *, double *unbalanced, double *applied);
+
 /* body_force.c: all of it nothing where the body has none */
 ab_status mpm_body_force_find(mpm_body *, const ab_step *,
                               ab_report *); /* where the points are; AB_FAILED: a formula has no finite value */
 void mpm_body_force_scatter(mpm_body *);
 void mpm_body_force_work(mpm_body *, const ab_step *);
+double mpm_body_force_size(const mpm_body *); /* N: sizes of the forces of this step, added up */
 size_t mpm_body_force_bytes(const mpm_body *);
 void mpm_body_force_destroy(mpm_body *);
 

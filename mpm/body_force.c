@@ -83,6 +83,15 @@ void mpm_body_force_work(mpm_body *body, const ab_step *step) {
         if (body->tiles[k].patch >= 0) body->energy.external += step->dt * body->sums[k].external;
 }
 
+double mpm_body_force_size(const mpm_body *body) {
+    double size = 0.0;
+    for (size_t slot = 0; body->body_force && slot < body->block_count * 8; ++slot) {
+        const double *force = body->body_force + 16 * (slot / 8) + slot % 8;
+        size += hypot(force[0], force[8]);
+    }
+    return size;
+}
+
 size_t mpm_body_force_bytes(const mpm_body *body) { return body->body_force_capacity * 16 * sizeof *body->body_force; }
 
 void mpm_body_force_destroy(mpm_body *body) { ab_memory_give(body->body_force, mpm_body_force_bytes(body)); }

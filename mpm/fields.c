@@ -84,7 +84,7 @@ ab_status mpm_read(const ab_domain *domain, const char *field, double *values, a
         if (is_position)
             for (int c = 0; c < 2; ++c) out[c] += body->origin[c];
         if (is_displacement)
-            for (int c = 0; c < 2; ++c) out[c] -= body->birth[2 * id + (size_t)c];
+            for (int c = 0; c < 2; ++c) out[c] -= (body->datum ? body->datum : body->birth)[2 * id + (size_t)c];
     }
     free(rank);
     return AB_OK;

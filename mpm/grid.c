@@ -48,8 +48,8 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
     free_[0] = free_[1] = 1.0;
     for (int s = 0; s < AB_SIDES; ++s) {
         if (!at[s]) continue;
-        if (scene->side[s] == AB_SIDE_FIXED) free_[0] = free_[1] = 0.0;
-        if (scene->side[s] == AB_SIDE_ROLLER) free_[s / 2] = 0.0;
+        if (body->side[s] == AB_SIDE_FIXED) free_[0] = free_[1] = 0.0;
+        if (body->side[s] == AB_SIDE_ROLLER) free_[s / 2] = 0.0;
     }
 }
 

@@ -144,9 +144,19 @@ static bool keep_outline(mpm_body *body, ab_checkpoint *c) {
     return true;
 }
 
+/* Where displacements are counted from, where a stage has set it. */
+static bool keep_datum(mpm_body *body, ab_checkpoint *c) {
+    if (!body->birth || body->scene->stage_count == 0) return true;
+    bool set = body->datum != NULL;
+    if (!ab_keep_flags(c, "datum_set", &set, 1)) return false;
+    if (set && !body->datum) body->datum = malloc(2 * body->born * sizeof *body->datum);
+    if (set && !body->datum) return ab_checkpoint_refuse(c, "no memory for %zu points", body->born);
+    return !set || ab_keep_doubles(c, "datum", body->datum, 2 * body->born);
+}
+
 void mpm_keep(ab_domain *domain, ab_checkpoint *c) {
     mpm_body *body = (mpm_body *)domain;
-    const bool good = keep_points(body, c) && keep_loads(body, c) && mpm_edges_keep(body, c) && keep_outline(body, c) &&
+    const bool good = keep_points(body, c) && keep_datum(body, c) && keep_loads(body, c) && mpm_edges_keep(body, c) && keep_outline(body, c) &&
                       ab_keep_flags(c, "sort_due", &body->sort_due, 1) && ab_keep_doubles(c, "wave_speed", &body->wave_speed, 1) &&
                       ab_keep_doubles(c, "largest_speed", &body->largest_speed, 1) &&
                       ab_keep_doubles(c, "last_strain", &body->last_strain, 1) && ab_keep_struct(c, "energy", &body->energy) &&

@@ -140,11 +140,19 @@ void mpm_loads_scatter(mpm_body *body, const ab_step *step) {
         mpm_load *load = body->loads + k;
         if (body->slot[load->id] == UINT32_MAX) continue;
         find_force(body, step->time + 0.5 * step->dt, load);
+        if (body->scene->loads[load->spec].absent >> step->stage & 1) load->force[0] = load->force[1] = 0.0;
         const mpm_reach r = mpm_load_reach(body, load);
         double *patch = body->patches + (size_t)r.tile->patch * mpm_patch_doubles(body);
         for (int i = 0; i < r.count; ++i)
             for (int c = 0; c < 2; ++c) patch[8 * r.node[i] + NODE_FORCE_X + (size_t)c] += r.n[i] * load->force[c];
     }
+}
+
+double mpm_loads_size(const mpm_body *body) {
+    double size = 0.0;
+    for (size_t k = 0; k < body->load_count; ++k)
+        if (body->slot[body->loads[k].id] != UINT32_MAX) size += hypot(body->loads[k].force[0], body->loads[k].force[1]);
+    return size;
 }
 
 void mpm_loads_work(mpm_body *body, const ab_step *step) {

@@ -135,7 +135,7 @@ static uint8_t planes_of(const mpm_body *body, const double x[2]) {
     uint8_t plane = 0;
     for (int s = 0; s < AB_SIDES; ++s) {
         const double side = s % 2 ? body->span[s / 2] : 0.0;
-        if (body->scene->side[s] == AB_SIDE_ROLLER && fabs(x[s / 2] - side) <= THERE * body->h) plane |= (uint8_t)(1u << s);
+        if (body->side[s] == AB_SIDE_ROLLER && fabs(x[s / 2] - side) <= THERE * body->h) plane |= (uint8_t)(1u << s);
     }
     return plane;
 }

@@ -25,13 +25,17 @@ static int compare_keys(const void *a, const void *b) {
 /* True when a node of the tile lies on or beyond a side that holds it. */
 static bool tile_is_held(const mpm_body *body, int32_t tx, int32_t ty) {
     const ab_scene *scene = body->scene;
-    const ab_side_kind *side = scene->side;
+    const ab_side_kind *side = body->side;
     const int last[2] = {scene->grid_cells[0], scene->grid_cells[1]};
     const bool held[4] = {tx * AB_TILE <= 0, tx * AB_TILE + AB_TILE - 1 >= last[0], ty * AB_TILE <= 0,
                           ty * AB_TILE + AB_TILE - 1 >= last[1]};
     for (int s = 0; s < AB_SIDES; ++s)
         if (held[s] && mpm_side_holds(side[s])) return true;
     return false;
+}
+
+void mpm_tiles_hold(mpm_body *body) {
+    for (size_t k = 0; k < body->tile_count; ++k) body->tiles[k].held = tile_is_held(body, body->tiles[k].tx, body->tiles[k].ty);
 }
 
 ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, ab_report *report) {
