@@ -13,9 +13,8 @@
 #include "abut_plugin.h"
 
 #include "boundary/dashpots.h"
-#include "boundary/history.h"
+#include "boundary/ground_record.h"
 
-enum { COMPLIANT, RIGID };
 enum { MOST_ELEMENTS = 100000, MOST_PARTS = 1000 };
 
 typedef struct level {   /* a node of the column and the element above it */
@@ -35,9 +34,8 @@ typedef struct place { /* of an edge beside the column */
 typedef struct column {
     const ab_host *host;
     double a, b, spacing, bottom, top;
-    int base, has_bottom, has_top;
-    history motion[2]; /* along x, along y */
-    int moves[2];
+    int has_bottom, has_top;
+    ground_record *record;
     /* made when the first edges come */
     uint64_t edges, elements;
     double foot, height; /* m: of the column's foot, of an element */
@@ -48,17 +46,7 @@ typedef struct column {
 } column;
 
 static const ab_param PARAMS[] = {
-    {"base", "1",
-     "what the column stands on. compliant: on ground like its own, which sends the given motion up and lets what comes down go; rigid: on "
-     "rock that moves as "
-     "given",
-     "compliant|rigid", AB_CHOICE, 0, COMPLIANT, 0, 0},
-    {"velocity_x", "s, m/s",
-     "pairs [t, v]: velocity along x of the rigid base, or of the wave that comes up through a compliant one (half of what it would move a "
-     "free surface by); straight "
-     "lines between the rows, at rest before and after",
-     NULL, AB_TABLE, AB_COLUMNS_2 | AB_INCREASING, 0.0, -INFINITY, INFINITY},
-    {"velocity_y", "s, m/s", "the same along y", NULL, AB_TABLE, AB_COLUMNS_2 | AB_INCREASING, 0.0, -INFINITY, INFINITY},
+    RECORD_PARAMS,
     {"spacing", "m", "height of the column's elements; best that of the elements or cells beside the side", NULL, AB_REAL,
      AB_REQUIRED | AB_MIN_OPEN, 1.0, 0.0, INFINITY},
     {"bottom", "m", "height y of the column's foot; without it the foot of the side, taken to be upright", NULL, AB_REAL, 0, 0.0, -INFINITY,
@@ -68,14 +56,11 @@ static const ab_param PARAMS[] = {
     {"a", "1", "of the dashpot along the normal, a rho c_p", NULL, AB_REAL, 0, 1.0, 0.0, INFINITY},
     {"b", "1", "of the dashpot across the normal, b rho c_s", NULL, AB_REAL, 0, 1.0, 0.0, INFINITY},
 };
-enum { AT_BASE, AT_X, AT_Y, AT_SPACING, AT_BOTTOM, AT_TOP, AT_A, AT_B };
+enum { AT_SPACING = RECORD_SETTINGS, AT_BOTTOM, AT_TOP, AT_A, AT_B };
 
 static int fail(const ab_host *host, const char *why) { return host->message(host->context, why), -1; }
 
 static int create(const ab_host *host, const ab_value *settings, void **self) {
-    if (!settings[AT_X].given && !settings[AT_Y].given)
-        return fail(host, "free-field needs the motion that shakes the ground: velocity_x or velocity_y, pairs [s, m/s] (with nothing to "
-                          "shake it use viscous)");
     if (settings[AT_BOTTOM].given && settings[AT_TOP].given && !(settings[AT_TOP].real > settings[AT_BOTTOM].real))
         return fail(host, "top is not above bottom");
     column *k = host->allocate(host->context, sizeof *k);
@@ -88,9 +73,11 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
                   .top = settings[AT_TOP].real,
                   .has_bottom = (int)settings[AT_BOTTOM].given,
                   .has_top = (int)settings[AT_TOP].given,
-                  .base = (int)settings[AT_BASE].integer,
-                  .motion = {history_of(settings + AT_X), history_of(settings + AT_Y)},
-                  .moves = {(int)settings[AT_X].given, (int)settings[AT_Y].given}};
+                  .record = record_open(host, settings, 0)};
+    if (!k->record) {
+        host->release(host->context, k);
+        return -1;
+    }
     *self = k;
     return 0;
 }
@@ -108,6 +95,7 @@ static void forget(column *k) {
 static void destroy(void *self) {
     column *k = self;
     forget(k);
+    k->host->release(k->host->context, k->record);
     k->host->release(k->host->context, k);
 }
 
@@ -171,17 +159,13 @@ static int build(column *k, const ab_edges *e) {
     return 0;
 }
 
-/* Velocity of the base along c, m/s. */
-static double base_motion(const column *k, int c, double time) {
-    const history *h = k->motion + c;
-    if (!k->moves[c] || h->rows == 0 || time < h->row[0] || time > h->row[2 * (h->rows - 1)]) return 0.0;
-    return history_at(h, time);
-}
-
 /* One step of the column, from `from` to `to`. */
 static void advance(const column *k, double time, double dt, const level *from, level *to) {
     const uint64_t n = k->elements;
     const double h = k->height;
+    const ground_record *r = k->record;
+    double base[MOST]; /* velocity of a rigid base at the end of the step, of the wave from below in its middle */
+    record_motion(r, r->base == RIGID ? time + dt : time + 0.5 * dt, base);
     for (uint64_t i = 0; i <= n; ++i) {
         const element *below = i > 0 ? k->ground + i - 1 : NULL, *above = i < n ? k->ground + i : NULL;
         const double mass = 0.5 * h * ((below ? below->density : 0.0) + (above ? above->density : 0.0));
@@ -191,13 +175,14 @@ static void advance(const column *k, double time, double dt, const level *from, 
             const double old = from[i].velocity[c];
             if (below)
                 to[i].velocity[c] = old + dt * force[c] / mass;
-            else if (k->base == RIGID)
-                to[i].velocity[c] = base_motion(k, c, time + dt);
+            else if (r->base == RIGID)
+                to[i].velocity[c] = base[c];
             else { /* dashpot of the ground below on the mean velocity of the step, and the stress of the wave that comes up */
-                const double z = c == 0 ? sqrt(above->density * above->s_modulus) : sqrt(above->density * above->p_modulus);
+                const double own = sqrt((c == 0 ? above->s_modulus : above->p_modulus) / above->density),
+                             speed = c == 0 ? r->s_speed : r->p_speed;
+                const double z = (r->density > 0.0 ? r->density : above->density) * (speed > 0.0 ? speed : own);
                 const double half = 0.5 * dt * z / mass;
-                to[i].velocity[c] =
-                    (old * (1.0 - half) + dt / mass * (force[c] + 2.0 * z * base_motion(k, c, time + 0.5 * dt))) / (1.0 + half);
+                to[i].velocity[c] = (old * (1.0 - half) + dt / mass * (force[c] + 2.0 * z * base[c])) / (1.0 + half);
             }
         }
     }
