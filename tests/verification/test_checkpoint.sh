@@ -91,6 +91,7 @@ kind fe_spin 150 0.5
 kind pressed_carried 50 10
 kind belt 150 0.1
 kind axi_tube 100 0.3
+kind free_field 40 0.3
 
 # In a folder of its own a run that goes on begins there. Checkpoints do not change a run; a guard before its plugins, its monitors, its end may be others.
 run "$scratch/rolling.yaml" -j 1 -o "$scratch/plain" --set "output={every: 0.05/5, fields: [velocity, stress]}" || say "rolling without checkpoints: exit $?"
