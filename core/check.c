@@ -60,6 +60,8 @@ static int reserve_nothing(void *context, ab_points *points, size_t points_more,
     return -1;
 }
 
+static void log_nothing(void *context, const char *text) { (void)context, (void)text; }
+
 bool ab_check_open(ab_check *check, ab_check_instance *instance, const ab_value *settings, ab_loaded_class *guard) {
     memset(instance, 0, sizeof *instance);
     instance->loaded = check->loaded;
@@ -70,6 +72,7 @@ bool ab_check_open(ab_check *check, ab_check_instance *instance, const ab_value 
     ab_service_init(&instance->service, check->loaded->class_.name);
     instance->service.guarded = instance->loaded->guarded;
     instance->service.host.reserve = reserve_nothing;
+    instance->service.host.log = log_nothing;
     const ab_class *class_ = &instance->loaded->class_;
     return !class_->create || class_->create(&instance->service.host, settings, &instance->self) == 0;
 }
@@ -175,15 +178,12 @@ static bool check_class(ab_check *check) {
                                        ab_check_settings, false};
     printf("%s (%s), %s\n", class_->name, ab_kind_name(class_->kind), check->loaded->path);
     printf("  kept       %-12s %s\n", "descriptor", "tables of this interface's sizes, names, units, ranges and defaults that fit");
-    if (class_->kind == AB_BOUNDARY) {
-        printf("  not tried  %-12s no scene can use a boundary plugin in this version\n", "boundary");
-        return true;
-    }
     bool kept = report_promise(check, &settings, true);
     const bool usable = check->shared->variants > 0;
-    const ab_check_promise *lists[3] = {0};
+    const ab_check_promise *lists[4] = {0};
     size_t count = 0;
     if (check->loaded->material.update) lists[count++] = ab_check_material;
+    if (check->loaded->boundary.apply) lists[count++] = ab_check_boundary;
     if (check->loaded->contact.find) lists[count++] = ab_check_finder;
     if (check->loaded->contact.respond) lists[count++] = ab_check_response;
     for (size_t l = 0; l < count; l++) {

@@ -33,7 +33,7 @@ typedef struct ab_check_promise {
     bool alone;               /* what follows means nothing where it is broken */
 } ab_check_promise;
 
-extern const ab_check_promise ab_check_material[], ab_check_response[], ab_check_finder[]; /* end with name NULL */
+extern const ab_check_promise ab_check_material[], ab_check_response[], ab_check_finder[], ab_check_boundary[]; /* end with name NULL */
 void ab_check_settings(ab_check *);
 void ab_check_remove_folder(ab_check *);
 

@@ -59,11 +59,17 @@ static void put(ab_value *value, const ab_param *p, double number) {
     value->integer = isfinite(value->real) && fabs(value->real) < 1e15 ? (int64_t)value->real : 0;
 }
 
+/* Rows 1 1, 2 2 ...: pairs where the setting is of pairs, or has a first column that grows. */
+static void put_table(ab_check *check, ab_value *value, const ab_param *p) {
+    const size_t columns = p->flags & (AB_COLUMNS_2 | AB_INCREASING) ? 2 : 1;
+    *value = (ab_value){.table = check->shared->table, .columns = columns, .rows = AB_CHECK_TABLE, .given = 1};
+}
+
 static void put_default(ab_check *check, ab_value *value, const ab_param *p) {
     memset(value, 0, sizeof *value);
     if (p->type == AB_TABLE) {
         if (!(p->flags & AB_REQUIRED)) return;
-        *value = (ab_value){.table = check->shared->table, .columns = p->flags & AB_COLUMNS_2 ? 2 : 1, .rows = AB_CHECK_TABLE, .given = 1};
+        put_table(check, value, p);
         return;
     }
     put(value, p, p->flags & AB_REQUIRED ? (p->type == AB_CHOICE || p->type == AB_FLAG ? 0.0 : typical(p)) : p->initial);
@@ -72,7 +78,10 @@ static void put_default(ab_check *check, ab_value *value, const ab_param *p) {
 
 /* A random one inside of its range. */
 static void put_inside(ab_check *check, ab_value *value, const ab_param *p) {
-    if (p->type == AB_TABLE) return;
+    if (p->type == AB_TABLE) {
+        put_table(check, value, p);
+        return;
+    }
     if (p->type == AB_CHOICE || p->type == AB_FLAG) {
         put(value, p, floor(ab_check_uniform(check, 0.0, p->type == AB_FLAG ? 2.0 : (double)ab_choice_count(p->choices))));
         return;

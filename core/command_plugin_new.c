@@ -16,20 +16,16 @@
 enum { NAME_MAX_ = 40, FILES = 3 };
 
 static ab_status check_kind(const char *kind, ab_report *report) {
-    static const char *const kinds[] = {"material", "finder", "response"};
+    static const char *const kinds[] = {"material", "boundary", "finder", "response"};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
         if (strcmp(kind, kinds[k]) == 0) return AB_OK;
-    if (strcmp(kind, "boundary") == 0)
-        return ab_report_error(report, AB_NOWHERE,
-                               "new boundary: not there yet: no scene can use a boundary plugin in this version; the kinds are "
-                               "material, finder and response");
     if (strcmp(kind, "contact") == 0)
         return ab_report_error(report, AB_NOWHERE,
                                "new contact: a contact plugin finds contact points or responds to them; write `abut plugins new finder "
                                "NAME` or `abut plugins new response NAME`");
     const char *near = ab_suggest(kind, (const char **)(uintptr_t)kinds, sizeof kinds / sizeof *kinds);
-    return ab_report_error(report, AB_NOWHERE, "new %s: there is no such kind%s%s%s; the kinds are material, finder and response", kind,
-                           near ? "; did you mean '" : "", near ? near : "", near ? "'" : "");
+    return ab_report_error(report, AB_NOWHERE, "new %s: there is no such kind%s%s%s; the kinds are material, boundary, finder and response",
+                           kind, near ? "; did you mean '" : "", near ? near : "", near ? "'" : "");
 }
 
 /* A name has to be one in scenes, in file names and, with '_' for '-', in C. */
@@ -38,9 +34,9 @@ static ab_status check_name(const char *name, ab_report *report) {
     bool good = length > 0 && length <= NAME_MAX_ && islower((unsigned char)name[0]) && name[length - 1] != '-';
     for (size_t i = 0; good && i < length; i++)
         good = islower((unsigned char)name[i]) || isdigit((unsigned char)name[i]) || (name[i] == '-' && name[i + 1] != '-');
-    static const char *const taken[] = {"law",    "create",  "destroy", "update", "find",  "reach", "respond", "params", "states",
-                                        "ops",    "classes", "main",    "int",    "long",  "for",   "if",      "do",     "auto",
-                                        "double", "float",   "char",    "short",  "union", "enum",  "const",   "static", "struct"};
+    static const char *const taken[] = {"law",   "create",  "destroy", "update", "find", "reach", "respond", "apply", "params", "states",
+                                        "ops",   "classes", "main",    "int",    "long", "for",   "if",      "do",    "auto",   "double",
+                                        "float", "char",    "short",   "union",  "enum", "const", "static",  "struct"};
     for (size_t k = 0; good && k < sizeof taken / sizeof *taken; k++)
         if (strcmp(name, taken[k]) == 0)
             return ab_report_error(report, AB_NOWHERE, "'%s' has a meaning in the source that is to be written; take another name", name);
@@ -132,9 +128,10 @@ int ab_command_plugin_new(const ab_command_line *line) {
     if (!report) return AB_FAILED;
     ab_status status = AB_OK;
     if (line->word_count != 3)
-        status = ab_report_error(report, AB_NOWHERE,
-                                 "`abut plugins new` takes a kind (material, finder, response) and a name, such as `abut plugins new "
-                                 "material soft-clay`");
+        status =
+            ab_report_error(report, AB_NOWHERE,
+                            "`abut plugins new` takes a kind (material, boundary, finder, response) and a name, such as `abut plugins new "
+                            "material soft-clay`");
     if (status == AB_OK) status = check_kind(line->words[1], report);
     if (status == AB_OK) status = check_name(line->words[2], report);
     if (status == AB_OK) status = write_all(line->words[1], line->words[2], line->output ? line->output : line->words[2], report);

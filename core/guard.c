@@ -332,6 +332,7 @@ void ab_guard_class(const ab_loaded_class *inner, ab_loaded_class *outer) {
     if (inner->class_.save) outer->class_.save = save, outer->class_.load = load;
     if (inner->material.update) outer->material.update = ab_guard_update;
     if (inner->material.start) outer->material.start = ab_guard_start;
+    if (inner->boundary.apply) outer->boundary.apply = ab_guard_apply;
     if (inner->contact.find) outer->contact.find = ab_guard_find;
     if (inner->contact.respond) outer->contact.respond = ab_guard_respond;
 }

@@ -98,6 +98,7 @@ int ab_guard_update(void *self, ab_batch *);
 int ab_guard_start(void *self, ab_batch *);
 int ab_guard_find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out);
 int ab_guard_respond(void *self, ab_points *points, size_t first, size_t count);
+int ab_guard_apply(void *self, ab_edges *);
 int ab_guard_reserve(void *context, ab_points *points, size_t points_more, size_t stencil_more);
 
 #endif

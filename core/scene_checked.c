@@ -13,6 +13,8 @@ static const ab_loaded_class *guarded(ab_scene_reader *r, const ab_loaded_class 
         if (finder != NULL && finder->guarded == loaded) return finder;
         if (responder != NULL && responder->guarded == loaded) return responder;
     }
+    for (size_t k = 0; k < scene->boundary_count; k++)
+        if (scene->boundaries[k].loaded != NULL && scene->boundaries[k].loaded->guarded == loaded) return scene->boundaries[k].loaded;
     ab_loaded_class *outer = ab_reader_take(&r->base, 1, sizeof *outer);
     if (outer == NULL) return loaded;
     ab_guard_class(loaded, outer);
@@ -28,4 +30,5 @@ void ab_scene_take_checked(ab_scene_reader *r, const ab_node *node) {
         scene->contacts[k].finder = guarded(r, scene->contacts[k].finder);
         scene->contacts[k].responder = guarded(r, scene->contacts[k].responder);
     }
+    for (size_t k = 0; k < scene->boundary_count; k++) scene->boundaries[k].loaded = guarded(r, scene->boundaries[k].loaded);
 }

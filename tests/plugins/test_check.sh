@@ -16,13 +16,13 @@ cd "$scratch" || exit 1
 
 count=0
 while read -r kind name _; do
-    [ "$kind" = material ] || [ "$kind" = contact ] || continue
+    [ "$kind" = material ] || [ "$kind" = contact ] || [ "$kind" = boundary ] || continue
     count=$((count + 1))
     "$build/abut" plugins check "$name" >said.txt 2>&1
     status=$?
     [ $status -eq 0 ] && ! grep -q 'BROKEN\|not tried' said.txt || say "built-in $name (exit $status): $(cat said.txt)"
 done < <("$build/abut" plugins)
-[ $count -ge 10 ] || say "only $count built-ins were checked"
+[ $count -ge 15 ] || say "only $count built-ins were checked"
 
 # broken KIND FAULT LINE PATTERN: exit 1, that line alone is broken, and the reason matches.
 broken() {
@@ -67,6 +67,21 @@ broken finder WRITES_MASS old-state 'it wrote into mass'
 broken finder WRITES_BEHIND arrays 'behind the end of gap'
 broken finder NOT_FINITE finite 'area -?nan'
 broken finder HEAVY_WEIGHTS momentum 'sum to 1.01, not 1'
+broken boundary COUNTS_CALLS again 'row 0 of traction .* when asked again'
+broken boundary REMEMBERS anew 'from an instance made anew'
+broken boundary ASKS_NEIGHBOUR batch 'asked for [12] edges? alone'
+broken boundary HARDER_ALONG_X frame 'from turned input'
+broken boundary SAYS_LESS differences 'the damping that it says is .*; differences say'
+broken boundary NEGATIVE_DAMPING differences 'damping across the normal is -'
+broken boundary PUSHES passive 'that makes energy'
+broken boundary WRITES_NORMAL old-state 'it wrote into normal'
+broken boundary WRITES_BEHIND arrays 'behind the end of traction'
+broken boundary WRITES_BEFORE arrays 'before the start of traction'
+broken boundary TAKES_UNASKED unasked 'SIGSEGV.*NULL for stiffness prescribed'
+broken boundary DIVIDES_BY_SPEED finite 'row 0 of traction is -?nan: .*waves'
+broken boundary NOT_WRITTEN finite 'row 0 of state1 is not written'
+broken boundary LOOPS finite 'did not come back.*SIGXCPU'
+broken boundary FORGETS_TO_SAVE saved 'after load'
 [ -z "$(ls "$TMPDIR")" ] || say "the check left files: $(ls "$TMPDIR")"
 
 # What cannot be checked says so.
@@ -99,4 +114,8 @@ ended finder WRITES_MASS "contact of 'block' and 'table': .*plugin 'my-law'.*it 
 ended finder WRITES_BEHIND "contact of 'block' and 'table': .*plugin 'my-law'.*behind the end of gap"
 ended finder NOT_FINITE "contact of 'block' and 'table': .*plugin 'my-law'.*\"finite\": point 0 of .* t = "
 ended finder HEAVY_WEIGHTS "contact of 'block' and 'table': .*plugin 'my-law'.*\"momentum is kept\": weights of side a of point 0 sum to 1.01"
+ended boundary WRITES_NORMAL "boundary 'my-law' on 'column' .*gave up at t = .*plugin 'my-law'.*it wrote into normal"
+ended boundary WRITES_BEHIND "boundary 'my-law' on 'column' .*gave up at t = .*plugin 'my-law'.*behind the end of traction"
+ended boundary WRITES_BEFORE "boundary 'my-law' on 'column' .*gave up at t = .*plugin 'my-law'.*before the start of traction"
+ended boundary DIVIDES_BY_SPEED "boundary 'my-law' on 'column' .*gave up at t = .*plugin 'my-law'.*\"finite\": row 0 of traction is -?nan"
 exit $wrong

@@ -19,7 +19,6 @@ refused() { # PATTERN WORDS...: exit 2 with a line that matches
     "$build/abut" plugins new "$@" >said.txt 2>&1
     [ $? -eq 2 ] && grep -q -- "$pattern" said.txt || say "plugins new $*: wanted '$pattern': $(cat said.txt)"
 }
-refused 'not there yet' boundary shaker
 refused "did you mean 'material'" materail clay
 refused 'finds contact points or responds' contact clay
 refused 'takes a kind' material
@@ -29,9 +28,10 @@ refused 'cannot be the name' material soft--clay
 refused 'cannot be the name' material clay-
 refused 'cannot be the name' material ''
 refused 'take another name' material update
+refused 'take another name' boundary apply
 [ "$(ls)" = "$(printf 'prefix\nsaid.txt')" ] || say "a refused name left something: $(ls)"
 
-for kind in material finder response; do
+for kind in material boundary finder response; do
     "$build/abut" plugins new $kind "own-$kind" >/dev/null || say "new $kind failed"
     file=own_$kind
     sum=$(cat own-$kind/* | cksum)
