@@ -132,10 +132,10 @@ typedef struct ab_domain_ops {
     double (*critical_dt)(ab_domain *, const char **limit);
     ab_status (*begin)(ab_domain *, const ab_step *, ab_report *); /* old velocities on the dofs, mass, internal and external force */
     ab_status (*early)(ab_domain *, const ab_step *,
-                       ab_report *); /* NULL unless the body strains first (USF): strain, stress, then its internal force */
+                       ab_report *); /* NULL unless the body strains first (USF, USAVG): strain, stress, then its internal force */
     ab_status (*trial)(ab_domain *, const ab_step *, ab_report *);  /* v* with sides, damping; NULL where begin has done it */
     ab_status (*finish)(ab_domain *, const ab_step *, ab_report *); /* final dof velocities -> the body's own velocities and places */
-    ab_status (*remap)(ab_domain *, const ab_step *, ab_report *);  /* NULL unless the body maps velocities back (MUSL) */
+    ab_status (*remap)(ab_domain *, const ab_step *, ab_report *);  /* NULL unless the body maps velocities back (MUSL, USAVG) */
     ab_status (*stress)(ab_domain *, const ab_step *, ab_report *); /* strain from dof velocities (unless done early), stress, volumes */
     void (*ledger)(const ab_domain *, ab_energy *, ab_motion *);    /* totals so far; friction and contact left at 0 */
     /* contact */

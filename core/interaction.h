@@ -8,7 +8,7 @@ typedef struct ab_interaction ab_interaction;
 
 typedef enum ab_stage {
     AB_STAGE_DYNAMIC,  /* impulses change momentum; forces and work are booked */
-    AB_STAGE_KINEMATIC /* the same conditions on a velocity field that only strains the bodies (USF before, MUSL after): nothing is booked */
+    AB_STAGE_KINEMATIC /* the same conditions on a velocity field that only strains the bodies (USF before, MUSL after, USAVG both): nothing is booked */
 } ab_stage;
 
 struct ab_interaction { /* first member of the maker's own struct */

@@ -124,7 +124,7 @@ typedef struct ab_body_spec {
     ab_f_bar f_bar;        /* material-points; elements have mesh.f_bar */
     int order;             /* AB_TRANSFER_XPIC, _FMPM: m */
     double flip;           /* AB_TRANSFER_FLIP: 1 flip, 0 pic */
-    char *update;          /* "usf" | "usl" | "musl" */
+    char *update;          /* "usf" | "usl" | "musl" | "usavg" */
     double surface_points; /* cells between points on the outline, which touch other bodies; 0: domains of material points do */
     ab_number velocity[2]; /* formulas of x, y */
     ab_initial_spec initial;

@@ -164,8 +164,10 @@ static const ab_key body[] = {
                             "along, for large shear and stretch"},
     [BODY_TRANSFER] = {"transfer", AB_KEY_WORD, .words = "flip|pic|apic|tpic", .initial = "flip",
                        .help = "how velocities come back; a blend is {flip: 0.99}, further ones are {xpic: 2} and {fmpm: 2}"},
-    [BODY_UPDATE] = {"update", AB_KEY_WORD, .words = "usf|usl|musl", .initial = "musl",
-                     .help = "when stress is updated: first, last, last from mapped-back velocities"},
+    [BODY_UPDATE] =
+        {"update", AB_KEY_WORD, .words = "usf|usl|musl|usavg", .initial = "musl",
+         .help = "when stress is updated: first, last, last from mapped-back velocities; usavg: half first and half last, which makes no "
+                 "energy however far a body flies, for nearly twice the work"},
     [BODY_F_BAR] = {"f_bar", AB_KEY_WORD, .words = "false|cell|patch", .initial = "false",
                     .help =
                         "against locking where volume is kept (nu near 0.5, plastic flow): the change of volume and the pressure are "

@@ -72,20 +72,27 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     body->scattered = false;
     body->external_before = body->energy.external;
     AB_TRY(mpm_body_force_find(body, step, report));
-    if (body->update != MPM_USF) {
+    if (!mpm_strains_first(body->update)) {
         mpm_loads_scatter(body, step);
         mpm_body_force_scatter(body);
     }
-    mpm_grid_assemble(body, step, body->update != MPM_USF);
+    mpm_grid_assemble(body, step, !mpm_strains_first(body->update));
     return mpm_light_tie(body, report);
 }
 
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
-static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, bool fuse, ab_report *report) {
+static ab_status stress_all(mpm_body *body, const ab_step *whole, bool advance, bool fuse, ab_report *report) {
+    const bool halves = body->update == MPM_USAVG;
+    ab_step part = *whole;
+    const ab_step *step = &part;
+    if (halves) part.dt *= 0.5;
+    body->from_end = halves && !advance;
     mpm_light_follow(body);
-    mpm_loads_follow(body, step);
-    mpm_edges_follow(body, step);
-    mpm_outline_follow(body, step);
+    if (!body->from_end) {
+        mpm_loads_follow(body, whole);
+        mpm_edges_follow(body, whole);
+        mpm_outline_follow(body, whole);
+    }
     body->ask_wave_speed = (body->material->loaded->class_.gives & AB_GIVE_WAVE_SPEED) &&
                            (body->material->loaded->class_.needs & (AB_NEED_DEFORMATION_GRADIENT | AB_NEED_DENSITY)) &&
                            step->number % WAVE_SPEED_EVERY == 0;
@@ -105,8 +112,8 @@ static ab_status stress_all(mpm_body *body, const ab_step *step, bool advance, b
         return ab_report_failure(
             report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m (step %ld, dt %.4g s, limit %.4g s): %s; %s",
             body->material->name, body->domain.spec->name, step->time, x[8 * ROW_X] + body->origin[0], x[8 * (ROW_X + 1)] + body->origin[1],
-            step->number, step->dt, body->last_limit, body->service.message[0] ? body->service.message : "no reason given",
-            step->dt > body->last_limit ? "dt is above the limit: use a smaller one, or cfl" : "a smaller dt or a finer grid may help");
+            step->number, whole->dt, body->last_limit, body->service.message[0] ? body->service.message : "no reason given",
+            whole->dt > body->last_limit ? "dt is above the limit: use a smaller one, or cfl" : "a smaller dt or a finer grid may help");
     }
     double fastest = 0.0;
     body->last_strain = 0.0;
@@ -219,7 +226,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     }
     mpm_light_follow(body);
     mpm_filter(body);
-    const bool remap = body->update == MPM_MUSL;
+    const bool remap = mpm_maps_back(body->update);
     if (!remap) {
         mpm_loads_work(body, step);
         mpm_body_force_work(body, step);
@@ -259,11 +266,12 @@ static ab_status stress(ab_domain *domain, const ab_step *step, ab_report *repor
 }
 
 /* Velocities and stresses are half a step apart (the scheme is a leap-frog): stresses are ahead when they are updated last and behind when they are
- * updated first. Half of the last increment brings the strain energy to the time of the kinetic one; without it their sum sways with w dt/2. */
+ * updated first. Half of the last increment brings the strain energy to the time of the kinetic one; without it their sum sways with w dt/2. USAVG has them
+ * together. */
 static void ledger(const ab_domain *domain, ab_energy *energy, ab_motion *motion) {
     const mpm_body *body = (const mpm_body *)domain;
     *energy = body->energy;
-    energy->strain += (body->update == MPM_USF ? 0.5 : -0.5) * body->last_strain;
+    if (body->update != MPM_USAVG) energy->strain += (body->update == MPM_USF ? 0.5 : -0.5) * body->last_strain;
     *motion = body->motion;
 }
 
@@ -285,7 +293,7 @@ static void dofs(const ab_domain *domain, ab_dofs *d) {
 
 static double modulus(const ab_domain *domain) { return ((const mpm_body *)domain)->modulus; }
 
-/* The three updates differ in one entry: USF strains early, MUSL maps velocities back, USL does neither. */
+/* The updates differ in two entries: USF strains early, MUSL maps velocities back, USAVG does both, USL neither. */
 #define SAME_IN_ALL                                                                                                                        \
     .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
     .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
@@ -294,6 +302,7 @@ static double modulus(const ab_domain *domain) { return ((const mpm_body *)domai
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
+static const ab_domain_ops OPS_USAVG = {SAME_IN_ALL, .early = early, .remap = remap};
 
 /* Energy and motion before the first step. */
 static void measure(mpm_body *body) {
@@ -356,13 +365,13 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
                                spec->name, spec->basis);
     }
     body->axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
-    body->update = !strcmp(spec->update, "usf") ? MPM_USF : !strcmp(spec->update, "usl") ? MPM_USL : MPM_MUSL;
-    body->domain = (ab_domain){.ops = body->update == MPM_USF   ? &OPS_USF
-                                      : body->update == MPM_USL ? &OPS_USL
-                                                                : &OPS_MUSL,
-                               .spec = spec,
-                               .dimension = 2,
-                               .index = index};
+    static const char *const UPDATES[] = {[MPM_USF] = "usf", [MPM_USL] = "usl", [MPM_MUSL] = "musl", [MPM_USAVG] = "usavg"};
+    static const ab_domain_ops *const OPS[] = {
+        [MPM_USF] = &OPS_USF, [MPM_USL] = &OPS_USL, [MPM_MUSL] = &OPS_MUSL, [MPM_USAVG] = &OPS_USAVG};
+    body->update = MPM_MUSL;
+    for (mpm_update u = MPM_USF; u <= MPM_USAVG; ++u)
+        if (!strcmp(spec->update, UPDATES[u])) body->update = u;
+    body->domain = (ab_domain){.ops = OPS[body->update], .spec = spec, .dimension = 2, .index = index};
     body->scene = scene;
     memcpy(body->side, scene->side, sizeof body->side);
     mpm_transfer_choose(body);

@@ -149,13 +149,19 @@ const mpm_kernel *mpm_kernel_of(const char *basis, ab_space); /* kernels.c; NULL
 /* True for a side that holds its nodes. At all others the grid goes on beyond. */
 static inline bool mpm_side_holds(ab_side_kind side) { return side == AB_SIDE_ROLLER || side == AB_SIDE_FIXED; }
 
-typedef enum mpm_update { MPM_USF, MPM_USL, MPM_MUSL } mpm_update;
+/* USAVG (update stress averaged: Nairn 2003): half of the step's strain as USF takes it, half as MUSL does. Between two forces points are then strained half by the gradients of their old
+ * place and half by those of their new one, which is what the forces there do work on. With the others that work is off by dt/2 sigma (B_new - B_old) v, which has no
+ * sign, and makes energy where bodies fly through the grid in time with their vibration (a parametric resonance). */
+typedef enum mpm_update { MPM_USF, MPM_USL, MPM_MUSL, MPM_USAVG } mpm_update;
+static inline bool mpm_strains_first(mpm_update update) { return update == MPM_USF || update == MPM_USAVG; }
+static inline bool mpm_maps_back(mpm_update update) { return update == MPM_MUSL || update == MPM_USAVG; }
 
 struct mpm_body {
     ab_domain domain; /* first */
     const ab_scene *scene;
     const mpm_kernel *kernel;
     mpm_update update;
+    bool from_end; /* usavg: the strain being taken is that of the half step that ends where points are */
     double flip;
     int finish;                /* MPM_FINISH_* */
     bool moment, keeps_moment; /* apic by moments of the velocities; rows.affine then holds B, not C: see transfer.inc */

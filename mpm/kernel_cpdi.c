@@ -272,7 +272,8 @@ INLINE void convect(double *r, const double h[4][LONG], uint32_t b) {
 }
 
 /* Displacement gradient of the step, H = dt grad v, of `blocks` blocks: rows of LONG doubles (xx, xy, yx, yy). */
-INLINE void gradients(const frame *f, const double *velocity, double dt_, const double *block, uint32_t blocks, double h[4][LONG]) {
+INLINE void gradients(const frame *f, bool from_end, const double *velocity, double dt_, const double *block, uint32_t blocks,
+                      double h[4][LONG]) {
     const v8 dt = v8_set(dt_);
     for (uint32_t b = 0; b < blocks; ++b, block += f->stride) {
         mpm_stencils w;
@@ -284,6 +285,7 @@ INLINE void gradients(const frame *f, const double *velocity, double dt_, const 
         v8_store(h[2] + 8 * b, dt * sum[1]);
         v8_store(h[3] + 8 * b, dt * sum[3]);
     }
+    if (from_end) mpm_seen_from_end(h, blocks, false);
 }
 
 /* f_bar: V d and V of a tile's points by cells onto its patch, d the change of volume in the step by the nodes' velocities. */
@@ -296,7 +298,7 @@ static void dilate(mpm_body *body, size_t number, const ab_step *step) {
     for (uint32_t begin = 0; begin < tile->blocks; begin += LONG / 8) {
         const uint32_t left = tile->blocks - begin, blocks = left < LONG / 8 ? left : LONG / 8;
         const double *block = mpm_block(body, tile->first + begin);
-        gradients(&f, velocity, step->dt, block, blocks, h);
+        gradients(&f, body->from_end, velocity, step->dt, block, blocks, h);
         for (uint32_t b = 0; b < blocks; ++b, block += f.stride)
             mpm_cells_add(body, tile, block, mpm_dilatation((const double(*)[LONG])h, b, false), patch);
     }
@@ -317,7 +319,7 @@ static int stress(mpm_body *body, size_t number, const ab_step *step, bool advan
     for (uint32_t begin = 0; begin < tile->blocks; begin += LONG / 8) {
         const uint32_t left = tile->blocks - begin, blocks = left < LONG / 8 ? left : LONG / 8;
         double *block = mpm_block(body, tile->first + begin);
-        gradients(&f, velocity, step->dt, block, blocks, h);
+        gradients(&f, body->from_end, velocity, step->dt, block, blocks, h);
         if (body->f_bar) mpm_average_dilatation(body, tile, means, block, blocks, h, false);
         for (uint32_t b = 0; b < blocks; ++b) mpm_batch_strain(&batch, rows, block + b * f.stride, (const double(*)[LONG])h, b, false);
         if (mpm_batch_call(&batch, body, 8 * blocks) != 0) return (int)(tile->first + begin);

@@ -57,9 +57,10 @@ void mpm_plan(const ab_domain *domain, ab_plan_body *p) {
     const char *outline = !body->outline ? "" : body->domain.spec->surface_points > 0.0 ? ", surface points" : ", outline";
     strncat(p->fields, outline, sizeof p->fields - strlen(p->fields) - 1);
     snprintf(p->passes, sizeof p->passes, "%s%s%s%s",
-             body->update == MPM_MUSL  ? "points to grid, grid, grid to points and back, grid, stress"
-             : body->update == MPM_USL ? "points to grid, grid, grid to points, stress"
-                                       : "points to grid, grid, stress and points to grid, grid, grid to points",
+             body->update == MPM_USAVG  ? "points to grid, grid, stress and points to grid, grid, grid to points and back, grid, stress"
+             : body->update == MPM_MUSL ? "points to grid, grid, grid to points and back, grid, stress"
+             : body->update == MPM_USL  ? "points to grid, grid, grid to points, stress"
+                                        : "points to grid, grid, stress and points to grid, grid, grid to points",
              body->load_count ? ", tractions" : "", body->domain.spec->has_force ? ", body force" : "", outline);
     if (body->edges_count) strncat(p->passes, ", edges of boundaries", sizeof p->passes - strlen(p->passes) - 1);
     if (body->f_bar) strncat(p->passes, ", averages of volume change and mean stress", sizeof p->passes - strlen(p->passes) - 1);

@@ -63,13 +63,13 @@ static double off(totals a, totals b, bool angular) {
     return angular ? fmax(linear, fabs(a.angular - b.angular) / 10) : linear;
 }
 
-static const char *const UPDATE[] = {"usl", "usf", "musl"}, *const TRANSFER[] = {"flip", "apic", "{xpic: 3}"};
+static const char *const UPDATE[] = {"usl", "usf", "musl", "usavg"}, *const TRANSFER[] = {"flip", "apic", "{xpic: 3}"};
 
 static void test_momenta_are_kept(void **state) {
     (void)state;
     double worst_to = 0, worst_forces = 0, worst_back = 0;
     for (int e = 0; e < OFFSETS; e++)
-        for (int u = 0; u < 3; u++)
+        for (int u = 0; u < 4; u++)
             for (int t = 0; t < 3; t++) {
                 one_body *one = one_body_create(scene(EPS[e], 4, 1e-3, UPDATE[u], TRANSFER[t]), 1);
                 mpm_body *body = one->mpm;
@@ -147,7 +147,7 @@ static void test_every_step_up_to_the_limit_is_stable(void **state) {
     (void)state;
     static const int per_cell[] = {1, 4, 9};
     for (int n = 0; n < 3; n++)
-        for (int u = 0; u < 3; u++) {
+        for (int u = 0; u < 4; u++) {
             double most = 0;
             for (int e = -8; e < OFFSETS; e++) {
                 const double eps =

@@ -44,9 +44,9 @@ static void check_points(const one_body *one, size_t born, double mass) {
 
 static void test_no_point_is_lost(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf"};
+    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf", "usavg"};
     for (int b = 0; b < 5; b++)
-        for (int u = 0; u < 2; u++) {
+        for (int u = 0; u < 3; u++) {
             const char *text = scene(basis[b], update[u],
                                      "shape: {disc: {center: [4, 6], radius: 2}}, fill: {rule: regular, per_cell: 9}, velocity: "
                                      "['4-1.5*(y-6)', '-5+1.5*(x-4)']");

@@ -16,9 +16,10 @@ static const char *scene(const char *basis, const char *update, const char *mate
 
 /* Every node's velocity such that x + v dt is x turned about (5, 7). */
 static void turn(one_body *one, void *data) {
-    (void)data;
     const mpm_body *body = one->mpm;
-    const double angle = 2 * PI / STEPS_PER_TURN, cosine = cos(angle), sine = sin(angle), dt = one->step.dt;
+    /* usavg strains first by the motion that has brought the points to where they are */
+    const double sign = body->update == MPM_USAVG && (*(int *)data)++ % 3 == 0 ? -1 : 1;
+    const double angle = sign * 2 * PI / STEPS_PER_TURN, cosine = cos(angle), sine = sin(angle), dt = sign * one->step.dt;
     for (size_t k = 0; k < body->tile_count; k++)
         for (int n = 0; n < AB_TILE_NODES; n++) {
             double x[2], *own = node_record(body, k, n);
@@ -43,8 +44,9 @@ static void check(const char *basis, const char *update, const char *material, d
         v0[body->ids[slot]] = *point_row(body, slot, ROW_VOLUME);
         total_volume += *point_row(body, slot, ROW_VOLUME);
     }
+    int calls = 0;
     for (int s = 1; s <= STEPS_PER_TURN * TURNS; s++) {
-        one_body_step(one, turn, NULL);
+        one_body_step(one, turn, &calls);
         if (s % 7 && s % STEPS_PER_TURN) continue; /* look at all angles, and after every turn */
         const double angle = 2 * PI * (s % STEPS_PER_TURN) / STEPS_PER_TURN, c = cos(angle), n = sin(angle);
         const double expected[4] = {c * c * start[0] + n * n * start[1] - 2 * c * n * start[3],
@@ -71,7 +73,8 @@ static void check(const char *basis, const char *update, const char *material, d
     worst_energy = fabs(body->energy.strain) / total_volume;
     print_message("%-8s %-4s %-14.14s stress %.1e of E, J %.1e, place %.1e m, F %.1e, strain energy %.1e of E\n", basis, update,
                   material + 7, worst_stress / modulus, worst_volume, worst_place, worst_gradient, worst_energy / modulus);
-    assert_true(worst_stress <= 1e-10 * modulus);
+    /* each half of usavg's step turns and stretches, and strain is of second order where both go together: here by 7.5 degrees a step */
+    assert_true(worst_stress <= (body->update == MPM_USAVG ? 1e-3 : 1e-10) * modulus);
     assert_true(worst_volume <= 1e-10);
     assert_true(worst_place <= 1e-10);
     assert_true(worst_gradient <= 1e-10);
@@ -82,10 +85,11 @@ static void check(const char *basis, const char *update, const char *material, d
 
 static void test_stress_turns_with_the_material(void **state) {
     (void)state;
-    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf", "usl"};
+    static const char *const basis[] = {"gimp", "linear", "bspline2", "bspline3", "cpdi"}, *const update[] = {"musl", "usf", "usl",
+                                                                                                              "usavg"};
     const double stress[4] = {3, -2, 1, 0.7}, zero[4] = {0};
     for (int b = 0; b < 5; b++)
-        for (int u = 0; u < 3; u++) {
+        for (int u = 0; u < 4; u++) {
             check(basis[b], update[u], "model: linear-elastic, E: 10, nu: 0.3", 10, stress);
             check(basis[b], update[u], "model: neo-hookean, E: 10, nu: 0.3", 10, zero);
             check(basis[b], update[u], "model: von-mises, E: 10, nu: 0.3, yield: 6", 10, stress);

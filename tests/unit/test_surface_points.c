@@ -111,8 +111,8 @@ static void test_any_shape_and_fill(void **state) {
 /* Turned by its own spin, a box keeps its surface points where its material points say they are. */
 static void test_a_turning_box_takes_them_along(void **state) {
     (void)state;
-    static const char *const UPDATES[] = {"usf", "usl", "musl"};
-    for (int which = 0; which < 3; which++) {
+    static const char *const UPDATES[] = {"usf", "usl", "musl", "usavg"};
+    for (int which = 0; which < 4; which++) {
         char more[200];
         snprintf(more, sizeof more, "update: %s, surface: points, fill: {per_cell: 4}", UPDATES[which]);
         one_body *one =

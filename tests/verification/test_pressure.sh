@@ -33,7 +33,7 @@ for type in q4r q6 q8 q8r; do # the inertia in the scene is that of q4
         size=1e-3 'work of the pressure=2e-3' 'spins faster=2e-2' 'ledger closes=1e-3' 'angular momentum=1e-10'
 done
 run "elements, f_bar" fe_pressed --set bodies.block.mesh.f_bar=true -- size=1e-3 'angular momentum=1e-10' 'ledger closes=1e-3'
-for update in usf usl; do run "points, $update" pressed --set bodies.block.update=$update -- size=1e-4 'work of the pressure=2e-3' 'ledger closes=5e-3'; done
+for update in usf usl usavg; do run "points, $update" pressed --set bodies.block.update=$update -- size=1e-4 'work of the pressure=2e-3' 'ledger closes=5e-3'; done
 run "points, fixed domains" pressed --set 'bodies.block.basis={gimp: fixed}' --set constants.F=0.97 -- size=1e-4 'work of the pressure=1e-3' 'ledger closes=1e-4'
 run "points, linear" pressed --set bodies.block.basis=linear --set constants.F=0.97 -- size=1e-2 'work of the pressure=5e-2'
 run "points, drawn at 30 degrees" pressed --set constants.turn=pi/6 --set constants.F=0.97 -- size=2e-4 'stress out of the plane=2e-3' 'ledger closes=1e-3'

@@ -67,6 +67,10 @@ for update in usf usl musl; do
         done
     done
 done
+for transfer in flip apic '{xpic: 2}'; do
+    mapfile -t settings < <(both update usavg && both transfer "$transfer")
+    runs "usavg, $transfer" "${settings[@]}"
+done
 for normal in mass-gradient volume-gradient stiffer '[0, -1]' average; do runs "normal $normal" "contact[0].normal=$normal"; done
 runs "no gap" 'contact[0].gap=none' 'expect[0].tolerance=0.5'
 for response in tied frictionless; do runs "$response" "contact[0].response=$response"; done
