@@ -24,11 +24,11 @@ void mpm_rest(ab_domain *domain, const ab_step *step) {
     double weight = 0.0;
     for (int c = 0; c < 2 && body->gravity; ++c) weight += half * step->gravity[c] * body->motion.momentum[c];
     const double work = 0.5 * (body->energy.external - body->external_before);
-    const double stored = body->update == MPM_USF ? 0.0 : 0.5 * body->last_strain;
+    const double stored = mpm_strains_first(body->update) ? 0.0 : 0.5 * body->last_strain;
     body->energy.damping += body->energy.kinetic + weight + work - stored;
     body->energy.potential -= weight;
     body->energy.external += work;
-    if (body->update != MPM_USF) body->last_strain = 0.0;
+    if (!mpm_strains_first(body->update)) body->last_strain = 0.0;
     body->external_before = body->energy.external;
     for (size_t b = 0; b < body->block_count; ++b) {
         double *block = mpm_block(body, b);
