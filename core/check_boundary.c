@@ -244,6 +244,6 @@ const ab_check_promise ab_check_boundary[] = {
     {"arrays", "nothing outside of the edges is read or written", ab_check_edges_arrays, false},
     {"unasked", "what it does not give may be NULL", ab_check_edges_unasked, false},
     {"finite", "finite numbers in, finite numbers out, or an error with a reason; every state written", ab_check_edges_finite, false},
-    {"saved", "what is saved and loaded goes on with the same bits", ab_check_edges_save, false},
+    {"save-load", "what is saved and loaded goes on with the same bits", ab_check_edges_save, false},
     {.name = NULL},
 };

@@ -68,7 +68,8 @@ static int take(ab_guard *guard, const ab_edges *e, const edge_rows *k) {
     for (size_t r = 0; k->host && r < k->rows; r++)
         for (size_t i = 0; i < e->count; i++) {
             const double x = own[r * e->count + i];
-            const bool good = (isfinite(x) && (!least || x >= 0.0)) || (k->k == PRESCRIBED && isnan(x));
+            const bool idle = !(e->area[i] > 0.0) && k->k != STATE1; /* nobody looks at it */
+            const bool good = idle || (isfinite(x) && (!least || x >= 0.0)) || (k->k == PRESCRIBED && isnan(x));
             if (!good && ab_guard_poisoned(x)) {
                 e->flag[i] = 1;
                 return ab_guard_break(guard, AB_PROMISE_FINITE, "row %zu of %s was not written for edge %zu of %zu at t = %g s", r, k->name,

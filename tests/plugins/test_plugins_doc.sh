@@ -39,12 +39,12 @@ if abut plugins --plugin-path build:plugins 2>twice.txt; then
 fi
 grep -q "offers the material class 'maxwell', and so does" twice.txt
 
-# The two examples: no warnings, and every promise kept (their commands ask the check, which would end this).
+# The three examples: no warnings, and every promise kept (their commands ask the check, which would end this).
 mkdir -p "$scratch/examples"
 cd "$scratch/examples"
 cut_out "$examples"
-[ "$(ls run_*.sh | wc -l)" -eq 2 ] || { echo "the examples have other commands than this test knows: $(ls)"; exit 1; }
-for file in speed_friction cyclic_soil; do cc -std=c11 -Wall -Wextra -Wshadow -Werror -shared -fPIC $(pkg-config --cflags abut) $file.c -o strict.so -lm; done
+[ "$(ls run_*.sh | wc -l)" -eq 3 ] || { echo "the examples have other commands than this test knows: $(ls)"; exit 1; }
+for file in speed_friction cyclic_soil shaker; do cc -std=c11 -Wall -Wextra -Wshadow -Werror -shared -fPIC $(pkg-config --cflags abut) $file.c -o strict.so -lm; done
 for commands in run_*.sh; do
     echo "== $commands"
     bash -eux "$commands"
