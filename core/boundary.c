@@ -313,6 +313,7 @@ static void book(ab_boundaries *all, boundary *b, const ab_step *step) {
         }
     }
     b->totals.work += work;
+    b->totals.other = b->totals.work + b->totals.dashpot + b->totals.spring;
     all->taken[b->spec->body] -= work;
 }
 
@@ -467,8 +468,8 @@ static bool keep_one(boundary *b, ab_checkpoint *c) {
            keep_rows(c, "states", b->state1, b->states, b) && ab_keep_doubles(c, "force", t->force, 2) &&
            ab_keep_doubles(c, "moment", &t->moment, 1) && ab_keep_doubles(c, "impulse", t->impulse, 2) &&
            ab_keep_doubles(c, "work", &t->work, 1) && ab_keep_doubles(c, "dashpot", &t->dashpot, 1) &&
-           ab_keep_doubles(c, "spring", &t->spring, 1) && ab_keep_doubles(c, "area", &t->area, 1) &&
-           ab_keep_plugin(c, "plugin", &b->spec->loaded->class_, b->self);
+           ab_keep_doubles(c, "spring", &t->spring, 1) && ab_keep_doubles(c, "other", &t->other, 1) &&
+           ab_keep_doubles(c, "area", &t->area, 1) && ab_keep_plugin(c, "plugin", &b->spec->loaded->class_, b->self);
 }
 
 void ab_boundaries_keep(ab_boundaries *all, ab_checkpoint *c) {

@@ -7,19 +7,9 @@
 #ifndef AB_BOUNDARY_H
 #define AB_BOUNDARY_H
 
-#include "core/domain.h"
+#include "core/results.h"
 
 typedef struct ab_boundaries ab_boundaries;
-
-typedef struct ab_boundary_totals { /* of one boundary of the scene */
-    double force[2];                /* N on the body in the last step */
-    double moment;                  /* N m about the origin of the scene */
-    double impulse[2];              /* N s on the body so far */
-    double work;                    /* J, done on the body so far; of it: */
-    double dashpot, spring;         /* J, taken by what the class calls damping (never negative) and by what it calls stiffness */
-    double area;                    /* m2 (m in plane strain), of the edges in the last step */
-    size_t edges;
-} ab_boundary_totals;
 
 /* For scenes that have some. Creates the instances; a body without edges, a class that refuses its settings: AB_BAD_INPUT. */
 ab_status ab_boundaries_create(const ab_scene *, ab_domain **, ab_boundaries **, ab_report *);

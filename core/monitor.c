@@ -207,6 +207,7 @@ ab_status ab_monitor_value(ab_monitors *monitors, size_t index, const ab_state_v
         switch (m->source) {
         case OF_MOTION: m->value = motion_value(monitors, m, view); break;
         case OF_ENERGY: m->value = energy_value(m, view); break;
+        case OF_BOUNDARY: m->value = number_at(&view->boundaries[m->spec->boundary], m->offset); break;
         case OF_CONTACT: m->value = contact_value(m, view); break;
         case OF_ALL_CONTACTS: m->value = force_value(m, view); break;
         case OF_REACTION: m->value = reaction_value(m, view); break;

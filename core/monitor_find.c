@@ -114,6 +114,32 @@ static bool find_contact(monitor *m, const char *base, int axis) {
     return false;
 }
 
+static bool find_boundary(monitor *m) {
+    static const struct {
+        const char *name, *unit;
+        size_t offset;
+    } known[] = {
+        {"force.x", "N", offsetof(ab_boundary_totals, force)},
+        {"force.y", "N", offsetof(ab_boundary_totals, force) + sizeof(double)},
+        {"moment", "N m", offsetof(ab_boundary_totals, moment)},
+        {"impulse.x", "N s", offsetof(ab_boundary_totals, impulse)},
+        {"impulse.y", "N s", offsetof(ab_boundary_totals, impulse) + sizeof(double)},
+        {"work", "J", offsetof(ab_boundary_totals, work)},
+        {"work.dashpot", "J", offsetof(ab_boundary_totals, dashpot)},
+        {"work.spring", "J", offsetof(ab_boundary_totals, spring)},
+        {"work.other", "J", offsetof(ab_boundary_totals, other)},
+        {"length", "m", offsetof(ab_boundary_totals, area)},
+    };
+    m->source = OF_BOUNDARY;
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        if (strcmp(known[k].name, m->spec->value) != 0) continue;
+        m->offset = known[k].offset;
+        m->unit = known[k].unit;
+        return true;
+    }
+    return false;
+}
+
 static bool find_points(monitor *m, const ab_domain *domain, const char *base, const char *component) {
     const ab_monitor_spec *spec = m->spec;
     m->source = OF_POINTS;
@@ -183,6 +209,7 @@ static bool find_value(monitor *m, const ab_state_view *view) {
         component = dot + 1;
     }
     const int axis = component[0] >= 'x' && component[0] <= 'z' && component[1] == '\0' ? component[0] - 'x' : -1;
+    if (spec->of_boundary) return find_boundary(m);
     if (dot != NULL && strcmp(base, "energy") == 0 && spec->contact < 0) {
         m->source = OF_ENERGY;
         m->unit = "J";
@@ -272,9 +299,10 @@ static ab_status complain(const ab_monitor_spec *spec, const ab_state_view *view
                                "monitor '%s': body '%s' is of %s and has no one angle; rotation-rate is a value of every body", spec->name,
                                domain->spec->name, domain->ops->method);
     return ab_report_error(report, spec->mark, "monitor '%s': there is no value '%s' of %s", spec->name, spec->value,
-                           spec->contact >= 0 ? "a contact"
-                           : spec->body >= 0  ? "this body, or not in this form"
-                                              : "the whole scene");
+                           spec->contact >= 0  ? "a contact"
+                           : spec->of_boundary ? "a boundary"
+                           : spec->body >= 0   ? "this body, or not in this form"
+                                               : "the whole scene");
 }
 
 static ab_status find(ab_monitors *monitors, monitor *m, const ab_state_view *view, ab_report *report) {

@@ -4,7 +4,7 @@
 
 #include "core/monitor.h"
 
-typedef enum source { OF_MOTION, OF_ENERGY, OF_CONTACT, OF_ALL_CONTACTS, OF_REACTION, OF_POINTS, OF_ROTATION, OF_DT } source;
+typedef enum source { OF_MOTION, OF_ENERGY, OF_CONTACT, OF_BOUNDARY, OF_ALL_CONTACTS, OF_REACTION, OF_POINTS, OF_ROTATION, OF_DT } source;
 typedef enum quantity { THE_COMPONENT, THE_LENGTH, THE_PRESSURE, THE_DISPLACEMENT } quantity; /* what is made of a field's components */
 typedef enum gather { AT_POINT, MEAN_BY_MASS, MEAN_BY_VOLUME, LARGEST, SMALLEST, SUM, MEAN_SQUARE } gather;
 

@@ -23,15 +23,27 @@ typedef struct ab_contact_totals {      /* of one contact of the scene */
     const double *pressure, *shear; /* Pa; NULL: force over area */
 } ab_contact_totals;
 
+typedef struct ab_boundary_totals { /* of one boundary of the scene */
+    double force[2];                /* N on the body in the last step */
+    double moment;                  /* N m about the origin of the scene */
+    double impulse[2];              /* N s on the body so far */
+    double work;                    /* J, done on the body so far; of it: */
+    double dashpot, spring;         /* J, taken by what the class calls damping (never negative) and by what it calls stiffness */
+    double area;                    /* m2 (m in plane strain), of the edges in the last step */
+    double other;                   /* J, done on the body by all else: work + dashpot + spring */
+    size_t edges;
+} ab_boundary_totals;
+
 typedef struct ab_state_view { /* what monitors and writers look at; borrowed from the scheduler */
     const ab_scene *scene;
     double time, dt;
     long step;
-    const char *limit;                 /* what binds dt */
-    size_t stage;                      /* 0 where the scene has none */
-    ab_domain **domains;               /* body_count */
-    const ab_contact_totals *contacts; /* contact_count */
-    const ab_energy *energy;           /* per body, friction and contact booked */
+    const char *limit;                    /* what binds dt */
+    size_t stage;                         /* 0 where the scene has none */
+    ab_domain **domains;                  /* body_count */
+    const ab_contact_totals *contacts;    /* contact_count */
+    const ab_boundary_totals *boundaries; /* boundary_count */
+    const ab_energy *energy;              /* per body, friction and contact booked */
     const ab_motion *motion;
     const ab_energy *energy_start; /* per body at t = 0 */
     ab_energy total;

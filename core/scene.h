@@ -181,6 +181,8 @@ typedef struct ab_monitor_spec {
     char *name;
     ab_mark mark;
     int body, contact; /* index or -1. Both -1: of the whole scene */
+    bool of_boundary;  /* of a boundary; body and contact are -1 */
+    size_t boundary;   /* which one */
     bool has_at;
     double at[2]; /* value at the point nearest to this place of the initial body */
     char *
@@ -302,6 +304,7 @@ typedef struct ab_scene {
     size_t load_count;
     ab_boundary_spec *boundaries;
     size_t boundary_count;
+    size_t boundary_listed; /* of them under `boundaries`, the first; the others are written at sides of the grid */
     ab_monitor_spec *monitors;
     size_t monitor_count;
     ab_expect_spec *expects;

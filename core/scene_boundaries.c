@@ -60,7 +60,7 @@ void ab_scene_take_boundaries(ab_scene_reader *r, const ab_node *node) {
     }
     scene->boundaries = ab_reader_take(&r->base, node->count, sizeof *scene->boundaries);
     if (scene->boundaries == NULL) return;
-    scene->boundary_count = node->count;
+    scene->boundary_count = scene->boundary_listed = node->count;
     for (size_t i = 0; i < node->count; i++) {
         char where[AB_WHERE];
         snprintf(where, sizeof where, "boundaries[%zu]", i);

@@ -418,8 +418,9 @@ SECTION(where, "where", where, NULL, "A set of places of a body at the start; se
 
 static const ab_key monitor[] = {
     [MONITOR_NAME] = {"name", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "its column in history.csv"},
-    [MONITOR_BODY] = {"body", AB_KEY_NAME, .help = "of a body; without body and contact: of the whole scene"},
+    [MONITOR_BODY] = {"body", AB_KEY_NAME, .help = "of a body; without body, contact and boundary: of the whole scene"},
     [MONITOR_CONTACT] = {"contact", AB_KEY_INTEGER, .unit = "1", .help = "of a contact: its place in the list, from 0"},
+    [MONITOR_BOUNDARY] = {"boundary", AB_KEY_INTEGER, .unit = "1", .help = "of a boundary: its place in the list, from 0"},
     [MONITOR_VALUE] = {"value", AB_KEY_TEXT, .flags = AB_KEY_REQUIRED, .help = "what is followed; the lists stand below"},
     [MONITOR_AT] = {"at", AB_KEY_POINT, .unit = "m", .help = "of the one point that is nearest to this place at the start"},
     [MONITOR_OVER] = {"over", AB_KEY_WORD, .words = "mass|volume|max|min|sum|rms",

@@ -11,6 +11,7 @@ enum { MOST_WORDS = 400, MOST_MONITORS = 1000, UNIT = 80 };
 static const char *value_unit(const ab_scene *scene, const ab_monitor_spec *monitor) {
     const ab_words *words = monitor->body >= 0      ? &ab_words_body_values
                             : monitor->contact >= 0 ? &ab_words_contact_values
+                            : monitor->of_boundary  ? &ab_words_boundary_values
                                                     : &ab_words_scene_values;
     if (monitor->value == NULL) return "";
     const ab_word *word = ab_words_find(words, monitor->value);
@@ -46,6 +47,7 @@ static void check_value(ab_scene_reader *r, const ab_node *node, const char *whe
     const ab_scene *scene = r->scene;
     const ab_words *words = monitor->body >= 0      ? &ab_words_body_values
                             : monitor->contact >= 0 ? &ab_words_contact_values
+                            : monitor->of_boundary  ? &ab_words_boundary_values
                                                     : &ab_words_scene_values;
     char path[AB_WHERE], tail[AB_TAIL];
     const char *text = ab_scene_word(r, node, ab_where_join(path, where, "value"), "one word such as position.x"), *names[MOST_WORDS];
@@ -65,6 +67,7 @@ static void check_value(ab_scene_reader *r, const ab_node *node, const char *whe
     ab_report_error(r->base.report, node->mark, "%s: unknown value '%.64s' of %s%s", path, text,
                     monitor->body >= 0      ? "a body"
                     : monitor->contact >= 0 ? "a contact"
+                    : monitor->of_boundary  ? "a boundary"
                                             : "the scene (name a body or a contact for theirs)",
                     ab_suggest_tail(text, names, count, tail, sizeof tail));
 }
@@ -83,10 +86,27 @@ static void take_monitor_name(ab_scene_reader *r, const ab_node *node, const cha
     monitor->name = ab_reader_text(&r->base, name);
 }
 
-/* Of what: a body, a contact or the scene. False when the name is wrong. */
+/* The number behind `contact` or `boundary` where there are `count` of them. */
+static bool take_number(ab_scene_reader *r, int key, const ab_node *node, const char *where, size_t count, long *number) {
+    const char *what = ab_section_monitor.keys[key].name;
+    if (!ab_read_integer(&r->base, &ab_section_monitor.keys[key], node, where, number)) return false;
+    if (*number >= 0 && *number < (long)count) return true;
+    if (count == 0)
+        ab_report_error(r->base.report, node->mark, "%s.%s: there is no %s %ld, the scene has none", where, what, what, *number);
+    else
+        ab_report_error(r->base.report, node->mark, "%s.%s: there is no %s %ld; they count from 0 to %zu", where, what, what, *number,
+                        count - 1);
+    return false;
+}
+
+/* Of what: a body, a contact, a boundary or the scene. False when the name is wrong. */
 static bool take_subject(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_monitor_spec *monitor) {
     char path[AB_WHERE];
     long contact = 0;
+    if (v[MONITOR_BOUNDARY] != NULL && (v[MONITOR_BODY] != NULL || v[MONITOR_CONTACT] != NULL)) {
+        ab_report_error(r->base.report, v[MONITOR_BOUNDARY]->mark, "%s has boundary beside body or contact; keep one", where);
+        return false;
+    }
     if (v[MONITOR_BODY] != NULL && v[MONITOR_CONTACT] != NULL) {
         ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s has both body and contact; keep one", where);
         return false;
@@ -96,18 +116,14 @@ static bool take_subject(ab_scene_reader *r, const ab_node *const *v, const char
         if (name != NULL) monitor->body = ab_scene_body_named(r, name, v[MONITOR_BODY]->mark, path);
         return monitor->body >= 0;
     }
-    if (v[MONITOR_CONTACT] == NULL) return true;
-    if (!ab_read_integer(&r->base, &ab_section_monitor.keys[MONITOR_CONTACT], v[MONITOR_CONTACT], where, &contact)) return false;
-    if (contact < 0 || contact >= (long)r->scene->contact_count) {
-        if (r->scene->contact_count == 0)
-            ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld, the scene has none", where,
-                            contact);
-        else
-            ab_report_error(r->base.report, v[MONITOR_CONTACT]->mark, "%s.contact: there is no contact %ld; they count from 0 to %zu",
-                            where, contact, r->scene->contact_count - 1);
-        return false;
+    if (v[MONITOR_CONTACT] != NULL) {
+        if (!take_number(r, MONITOR_CONTACT, v[MONITOR_CONTACT], where, r->scene->contact_count, &contact)) return false;
+        monitor->contact = (int)contact;
+    } else if (v[MONITOR_BOUNDARY] != NULL) {
+        if (!take_number(r, MONITOR_BOUNDARY, v[MONITOR_BOUNDARY], where, r->scene->boundary_listed, &contact)) return false;
+        monitor->of_boundary = true;
+        monitor->boundary = (size_t)contact;
     }
-    monitor->contact = (int)contact;
     return true;
 }
 

@@ -146,6 +146,7 @@ void ab_scene_write_reference(FILE *stream) {
                       "`body: NAME`. Besides, a state that the body's material declares, by name (`plastic_strain`, `back_stress.xy`).",
                       &ab_words_body_values, true);
     write_words_table(stream, "Monitor values of a contact", "`contact: i`.", &ab_words_contact_values, true);
+    write_words_table(stream, "Monitor values of a boundary", "`boundary: i`.", &ab_words_boundary_values, true);
     write_words_table(stream, "Monitor values of the scene", "Without body and contact.", &ab_words_scene_values, true);
     write_words_table(stream, "over", "How the points of a body become one number. `mass` and `volume` are the body's own without it.",
                       &ab_words_over, false);

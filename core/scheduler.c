@@ -288,6 +288,7 @@ void ab_schedule_view(const ab_schedule *s, ab_state_view *view) {
                             .total = s->total,
                             .remainder = s->total_now - s->total_start};
     if (s->stages) view->stage = s->stages->now;
+    view->boundaries = s->boundaries ? ab_boundaries_totals(s->boundaries) : NULL;
     view->contacts = s->interaction ? s->interaction->totals(s->interaction) : NULL;
 }
 

@@ -68,6 +68,19 @@ static const ab_word contact_values[] = {
     {"work.contact", "J", "lost by normal impulses so far"},
 };
 
+static const ab_word boundary_values[] = {
+    {"force.x", "N", "force on the body along x"},
+    {"force.y", "N", "force on the body along y"},
+    {"moment", "N m", "moment on the body about the origin of the scene"},
+    {"impulse.x", "N s", "impulse on the body so far, along x"},
+    {"impulse.y", "N s", "impulse on the body so far, along y"},
+    {"work", "J", "done on the body so far"},
+    {"work.dashpot", "J", "taken from the body by what the plugin calls damping, so far"},
+    {"work.spring", "J", "held by what the plugin calls stiffness"},
+    {"work.other", "J", "done on the body so far by all else: loads, waves that come in, prescribed motion"},
+    {"length", "m", "of the outline under it (in axisymmetric scenes area, m2)"},
+};
+
 static const ab_word scene_values[] = {
     {"dt", "s", "time step"},
     MOMENTUM_WORDS,
@@ -128,6 +141,7 @@ static const ab_word fields[] = {
 
 const ab_words ab_words_body_values = WORDS(body_values);
 const ab_words ab_words_contact_values = WORDS(contact_values);
+const ab_words ab_words_boundary_values = WORDS(boundary_values);
 const ab_words ab_words_scene_values = WORDS(scene_values);
 const ab_words ab_words_over = WORDS(over);
 const ab_words ab_words_norms = WORDS(norms);

@@ -14,11 +14,12 @@ typedef struct ab_words {
     size_t count;
 } ab_words;
 
-extern const ab_words ab_words_body_values;    /* monitor values of a body */
-extern const ab_words ab_words_contact_values; /* monitor values of a contact */
-extern const ab_words ab_words_scene_values;   /* monitor values of the whole scene */
-extern const ab_words ab_words_over;           /* how a body's points become one number */
-extern const ab_words ab_words_norms;          /* unit: "" the monitor's own, "s" a time, "*s" own times s, "/s" own by s */
+extern const ab_words ab_words_body_values;     /* monitor values of a body */
+extern const ab_words ab_words_contact_values;  /* monitor values of a contact */
+extern const ab_words ab_words_boundary_values; /* monitor values of a boundary */
+extern const ab_words ab_words_scene_values;    /* monitor values of the whole scene */
+extern const ab_words ab_words_over;            /* how a body's points become one number */
+extern const ab_words ab_words_norms;           /* unit: "" the monitor's own, "s" a time, "*s" own times s, "/s" own by s */
 extern const ab_words
     ab_words_columns;                  /* ledger columns of history.csv; also as BODY.column, but for those that ab_column_is_total names */
 extern const ab_words ab_words_fields; /* output fields that every material-point body has */
