@@ -2,12 +2,18 @@
 #include "core/doubts.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double HOPELESS =
     3; /* of the limit: limits are of the worst places of points, others bear up to 2.2 of it (tests/stability/dt.yaml) */
-static const double FAR = 2400;       /* cells: where flip on gimp and cpdi has grown to what there is (docs/accuracy.md) */
-static const double FAR_LINEAR = 10;  /* cells: the same on the linear basis, at cfl 0.5 and above (tests/stability/light_nodes.yaml) */
+/* What of a body's velocity is rounding grows with flip, by this in a cell and dt over its limit at most, wherever it flies in time with its vibrations: measured over
+ * speeds of 0.03 to 2 c and cfl 0.3 to 0.9 (docs/extremes_hold.md). */
+static const double GROWTH = 0.1, GROWTH_SPLINE = 0.015;
+static const double GROWN = 25; /* e^25 times rounding, 1e-5 of the speed: no farther */
+static const double FAR_LINEAR =
+    10; /* cells: where vibrations have grown on the linear basis, at cfl 0.5 and above (tests/stability/light_nodes.yaml) */
+static const double BEHIND = 0.01;    /* cells: a point no farther from a node line crosses it with the first vibrations */
 static const double SPLINE_CFL = 0.6; /* bspline3 with usl */
 static const double INCOMPRESSIBLE =
     0.49; /* Poisson's ratio from where on volume locks low-order bodies, and waves are 4 times as fast as at 0.3 */
@@ -20,17 +26,55 @@ static double speed_of(const ab_schedule *s, size_t b) {
     return motion->mass > 0.0 ? hypot(motion->momentum[0], motion->momentum[1]) / motion->mass : 0.0;
 }
 
-static void doubt_flight(const ab_schedule *s, size_t b, ab_report *report) {
+static bool flips_off_balance(const ab_body_spec *body) {
+    return body->transfer == AB_TRANSFER_FLIP && body->flip == 1.0 && (is(body->update, "musl") || is(body->update, "usf"));
+}
+
+static ab_status doubt_flight(const ab_schedule *s, size_t b, ab_report *report) {
     const ab_body_spec *body = s->scene->bodies + b;
-    if (body->transfer != AB_TRANSFER_FLIP || body->flip != 1.0 || !body->update || is(body->update, "usl")) return;
-    const bool linear = is(body->basis, "linear"), domains = is(body->basis, "gimp") || is(body->basis, "cpdi");
+    if (!flips_off_balance(body)) return AB_OK;
+    const bool linear = is(body->basis, "linear"), spline = is(body->basis, "bspline2") || is(body->basis, "bspline3");
     const double cells = speed_of(s, b) * s->scene->time_end / s->scene->grid_cell;
-    if (!(domains && cells > FAR) && !(linear && cells > FAR_LINEAR)) return;
-    ab_report_warning(
-        report, body->mark,
-        "bodies.%s: it flies through about %.3g cells with transfer flip, update %s on basis %s, which makes energy from some %g "
-        "cells on; use transfer apic or {flip: 0.99}, or update usl",
-        body->name, cells, body->update, body->basis, linear ? FAR_LINEAR : FAR);
+    const double part = s->scene->time_dt > 0.0 ? s->scene->time_dt / s->critical_dt : s->scene->time_cfl;
+    const double most = GROWN / ((spline ? GROWTH_SPLINE : GROWTH) * part);
+    static const char REMEDY[] = "use update usavg, transfer apic or {flip: 0.99}, or update usl";
+    if (cells > most && s->scene->watch)
+        return ab_report_error(
+            report, body->mark,
+            "bodies.%s: it flies through about %.3g cells with transfer flip, update %s on basis %s, which may make energy "
+            "out of rounding from some %.2g cells on, at this dt; %s. (watchdog: {stop: false} lets it be tried)",
+            body->name, cells, body->update, body->basis, most, REMEDY);
+    if (linear && cells > FAR_LINEAR)
+        ab_report_warning(
+            report, body->mark,
+            "bodies.%s: it flies through about %.3g cells with transfer flip, update %s on basis %s, which makes energy of its "
+            "vibrations from some %g cells on; %s",
+            body->name, cells, body->update, body->basis, FAR_LINEAR, REMEDY);
+    return AB_OK;
+}
+
+/* usf on the linear basis: what strains a point as it crosses a node is not what its stress then works on, by up to a quarter of a bar's energy in three periods
+ * (tests/stability/point_past_node.yaml). */
+static ab_status doubt_crossing(const ab_schedule *s, size_t b, ab_report *report) {
+    const ab_body_spec *body = s->scene->bodies + b;
+    if (!s->scene->watch || !flips_off_balance(body) || !is(body->basis, "linear") || !is(body->update, "usf")) return AB_OK;
+    const ab_domain *domain = s->domains[b];
+    const size_t count = domain->ops->count(domain);
+    double *x = malloc((2 * count + 1) * sizeof *x);
+    if (!x) return ab_report_failure(report, "no memory for the places of %zu points", count);
+    ab_status status = domain->ops->read(domain, "position", x, report);
+    for (size_t k = 0; k < 2 * count && status == AB_OK; ++k) {
+        const double cells = (x[k] - s->scene->grid_from[k % 2]) / s->scene->grid_cell, past = cells - rint(cells);
+        if (fabs(past) >= BEHIND) continue;
+        status =
+            ab_report_error(report, body->mark,
+                            "bodies.%s: a point at (%.9g, %.9g) m stands %.2g of a cell from a line of nodes, and makes energy with update "
+                            "usf on basis linear as it crosses it; use update usavg or musl, or move the grid. (watchdog: {stop: false} "
+                            "lets it be tried)",
+                            body->name, x[k - k % 2], x[k - k % 2 + 1], fabs(past));
+    }
+    free(x);
+    return status;
 }
 
 static void doubt_poisson(const ab_schedule *s, size_t b, ab_report *report) {
@@ -65,7 +109,8 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
     for (size_t b = 0; b < s->body_count; ++b) {
         const ab_body_spec *body = scene->bodies + b;
         AB_TRY(check_first_step(s, b, report));
-        doubt_flight(s, b, report);
+        AB_TRY(doubt_flight(s, b, report));
+        AB_TRY(doubt_crossing(s, b, report));
         doubt_poisson(s, b, report);
         if (is(body->basis, "bspline3") && is(body->update, "usl") && scene->time_cfl > SPLINE_CFL)
             ab_report_warning(report, scene->mark_time,
