@@ -23,6 +23,9 @@
 #ifndef OPS_SIZE
 #define OPS_SIZE sizeof(ab_material_ops)
 #endif
+#ifndef START
+#define START NULL /* of a boundary: apply */
+#endif
 #ifndef UPDATE
 #define UPDATE update
 #endif
@@ -79,7 +82,7 @@ __attribute__((unused)) static int update(void *self, ab_batch *batch) {
 
 extern const ab_param params[];
 const ab_param params[] = {PARAM};
-static const ab_material_ops ops = {OPS_SIZE, NULL, UPDATE};
+static const ab_material_ops ops = {OPS_SIZE, START, UPDATE};
 extern const ab_class wrong_class;
 const ab_class wrong_class = {.struct_size = CLASS_SIZE,
                               .kind = KIND,
