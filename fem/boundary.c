@@ -7,8 +7,8 @@
 #include "fem/domain.h"
 
 enum { ROWS = 8 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds */
-static const double TOGETHER =
-    0.866; /* cosine: faces that turn by less than 30 degrees at a node share one edge there; at a corner each has its own */
+/* Cosine: faces that turn by less than 30 degrees at a node share one edge there; at a corner each has its own. */
+static const double TOGETHER = 0.866;
 
 typedef struct share { /* of a face in an edge */
     uint32_t node[3];  /* of the face: first, last, middle */
