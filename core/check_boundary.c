@@ -198,6 +198,7 @@ static void frame(ab_check *check, const ab_value *settings, ab_check_instance *
     for (int n = 0; n < 4; n++) {
         const double a = ab_check_uniform(check, 0.0, 6.28), b = dimension == 3 ? ab_check_uniform(check, 0.0, 6.28) : 0.0;
         double Q[3][3] = {{cos(a), -sin(a) * cos(b), sin(a) * sin(b)}, {sin(a), cos(a) * cos(b), -cos(a) * sin(b)}, {0.0, sin(b), cos(b)}};
+        for (int r = 0; r < 3 && n % 2; r++) Q[r][0] = -Q[r][0]; /* mirrored */
         edge_bench_prepare(check, &one, instance, settings, dimension);
         two = one, edge_bench_point(&two);
         double *inputs[] = {two.position, two.normal, two.displacement, two.velocity};
@@ -236,7 +237,7 @@ const ab_check_promise ab_check_boundary[] = {
     {"again", "the same input gives the same bits when asked again", keep_again, true},
     {"anew", "an instance made anew gives the same bits", keep_anew, false},
     {"batch", "an edge has the same bits asked for alone and among many, for any ld", keep_batches, false},
-    {"frame", "turned edges get turned tractions", keep_frame, false},
+    {"frame", "turned or mirrored edges get turned or mirrored tractions", keep_frame, false},
     {"differences", "damping and stiffness are what differences of the traction say, and not negative", ab_check_damping, false},
     {"passive", "a larger velocity, or displacement, gets no more traction along it where damping, or stiffness, is given",
      ab_check_passive, false},

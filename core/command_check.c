@@ -12,6 +12,7 @@ static void print_ok(const char *path, const ab_scene *scene, size_t warnings) {
     count(stdout, ", ", scene->material_count, "material", "materials");
     count(stdout, ", ", scene->contact_count, "contact", "contacts");
     count(stdout, ", ", scene->load_count, "load", "loads");
+    count(stdout, ", ", scene->boundary_count, "boundary", "boundaries");
     count(stdout, ", ", scene->monitor_count, "monitor", "monitors");
     count(stdout, ", ", scene->expect_count, "expect", "expects");
     count(stdout, "; ", warnings, "warning", "warnings");

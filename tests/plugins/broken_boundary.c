@@ -18,7 +18,6 @@ enum {
     TAKES_UNASKED,
     DIVIDES_BY_SPEED,
     NOT_WRITTEN,
-    LOOPS,
     FORGETS_TO_SAVE
 };
 
@@ -87,7 +86,6 @@ static int apply(void *self, ab_edges *e) {
         for (size_t c = 0; FAULT == PUSHES && speed > 9 && c < e->dimension; c++) t[c * n] *= -1;
         if (FAULT == DIVIDES_BY_SPEED) t[0] *= speed / speed;
         if (FAULT == NOT_WRITTEN && i == 0 && e->time < 0) e->state1[0] = kept;
-        while (FAULT == LOOPS && speed > 1e6) speed += broken_sink;
     }
     return code;
 }
