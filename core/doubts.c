@@ -104,6 +104,26 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
         body->name, cells, speed_of(s, b), s->critical_dt);
 }
 
+/* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). */
+static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
+    const ab_class *finder = &contact->finder->class_;
+    if (!is(finder->name, "multi-velocity") || !s->scene->watch) return AB_OK;
+    for (uint32_t k = 0; k < finder->nparam; ++k)
+        if (is(finder->param[k].name, "normal") && contact->finder_settings[k].integer < 0) return AB_OK; /* a direction */
+    for (int side = 0; side < 2; ++side) {
+        const ab_body_spec *body = s->scene->bodies + contact->body[side];
+        const ab_domain *domain = s->domains[contact->body[side]];
+        if (!is(body->method, "material-points") || domain->ops->count(domain) > 1) continue;
+        return ab_report_error(
+            report, contact->mark,
+            "contact: body '%s' is a single material point, which shows no face to algorithm multi-velocity and would be pushed "
+            "along what it lies on; use algorithm point-to-segment, a direction as normal (out of the first body), or more points. "
+            "(watchdog: {stop: false} lets it be tried)",
+            body->name);
+    }
+    return AB_OK;
+}
+
 ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     for (size_t b = 0; b < s->body_count; ++b) {
@@ -117,6 +137,7 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
                               "time.cfl %g: basis bspline3 with update usl (body '%s') is stable up to about %g; use that, or update musl",
                               scene->time_cfl, body->name, SPLINE_CFL);
     }
+    for (size_t c = 0; c < scene->contact_count; ++c) AB_TRY(doubt_single_point(s, scene->contacts + c, report));
     if (scene->time_dt > HOPELESS * s->critical_dt && scene->watch)
         return ab_report_error(
             report, scene->mark_time,

@@ -47,5 +47,22 @@ expect run 1 "body 'block': point [0-9]+ moved [0-9.]+ cells in one step, to \(.
 expect run 1 "body 'block': point [0-9]+ moved .* cells in one step, to \(.*something threw it" $nodes 'time={end: 50, dt: 0.4}' 'bodies.block.body_force=["1e9*rho*t", 0]'
 expect run 1 "turned inside out .*dt is above the limit of the mesh as it is now" ../verification/fe_bar 'time={end: 50, dt: 0.08}'
 expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
+expect check 2 "contact: body 'stone' is a single material point" small_bodies
+expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
+# one element, a corner of which is pushed through its diagonal: first nearly inside out, then, where that is let go on, turned
+cat >pushed_in.yaml <<'SCENE'
+abut: 1
+title: A corner pushed in
+time: {end: 2, dt: 1e-3}
+materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}
+bodies:
+  block:
+    method: finite-elements
+    material: m
+    mesh: {box: [[0, 0], [1, 1]], elements: [1, 1], type: q4}
+    fix: [{where: {x: 0}, velocity: [0, 0]}, {where: {y: 0}, velocity: [0, 0]}, {where: {x: 1, y: 1}, velocity: [-0.5, -0.5]}]
+SCENE
+here=. expect run 1 "body 'block': element [0-9]+ near .* m is nearly turned inside out \(watchdog: \{stop: false\} lets it go on\) at t = 0.99.*step 99[0-9], dt .*limit .*use a smaller dt" pushed_in
+here=. expect run 1 "element [0-9]+ near .* m is turned inside out at t = 1" pushed_in 'watchdog={stop: false}'
 [ $missed -eq 0 ] && echo "passed: $(basename "$0")"
 [ $missed -eq 0 ]
