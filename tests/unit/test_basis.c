@@ -1,5 +1,6 @@
 /* test_basis.c: what every basis promises wherever a point stands, at walls, in corners and between walls a few cells apart: weights add up to 1 and reproduce places,
  * gradients are their slopes, no weight is negative, and nodes beyond a side that holds nodes get nothing from a spline. */
+#include "effort.h"
 #include "one_body.h"
 
 static const char *const bases[] = {"linear", "gimp", "bspline2", "bspline3", "cpdi"};
@@ -107,7 +108,7 @@ static void test_weights_add_up_and_reproduce_places_everywhere(void **state) {
             one_body *one = grid_of(bases[b], cells[0], cells[1], side);
             mpm_body *body = one->mpm;
             double *block = mpm_block(body, 0);
-            for (int round = 0; round < 3000; round++) {
+            for (int round = 0; round < EFFORT(3000, 300); round++) {
                 double at[8][2];
                 int32_t first[2][8], before[2][8], behind[2][8];
                 for (int l = 0; l < 8; l++) {
@@ -152,7 +153,7 @@ static void test_gradients_are_slopes(void **state) {
             mpm_body *body = one->mpm;
             double *block = mpm_block(body, 0);
             const double small = 1e-5;
-            for (int round = 0; round < 2000; round++) {
+            for (int round = 0; round < EFFORT(2000, 200); round++) {
                 const double middle[2] = {random_between(small, size - small), random_between(small, 3 - small)},
                              half = random_between(0.1, 0.5);
                 static const int step[5][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -189,7 +190,7 @@ static void test_splines_have_their_spread(void **state) {
         mpm_body *body = one->mpm;
         double *block = mpm_block(body, 0), d[3][8], most = 0;
         const double inside = b == 2 ? 1.0 / 4 : 1.0 / 3, band = b == 2 ? 0.5 : 1;
-        for (int round = 0; round < 2000; round++) {
+        for (int round = 0; round < EFFORT(2000, 200); round++) {
             for (int l = 0; l < 8; l++) put(body, block, l, (const double[]){random_between(0, 7), random_between(0, 7)}, 0);
             mpm_tile tile = {.tx = 0, .ty = 0};
             body->kernel->spreads(body, &tile, block, d);

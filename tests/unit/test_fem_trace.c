@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "effort.h"
 #include "fem/trace.h"
 
 static const double H = 0.25, DENSITY = 3.0;
@@ -92,7 +93,7 @@ static const double ANGLE[3] = {0.0, 0.5235987755982988, 2.2};
 static void for_all(void (*look)(square *, fem_trace *, ab_report *)) {
     const ab_scene s = scene();
     ab_report *report = ab_report_create();
-    for (int size = -3; size <= 3; size++)
+    for (int size = -3; size <= 3; size += EFFORT(1, 3))
         for (int k = 0; k < 9; k++) {
             const double element = H * pow(2.0, size);
             square b = square_create(fmax(element, 8 * H), (int)lround(fmax(8 * H / element, 1.0)), FROM[k / 3], ANGLE[k % 3]);

@@ -1,4 +1,5 @@
 /* test_fill_cvt.c: centroidal Voronoi fills: exact masses, points inside at the centroids of their cells, the same for any number of threads and wherever the body stands. */
+#include "effort.h"
 #include "fill_checks.h"
 
 static double ell[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, star[10][2], frame[4][2] = {{0, 0}, {3, 0}, {3, 2}, {0, 2}},
@@ -79,7 +80,7 @@ static void test_any_shape_and_number_is_exact_and_inside(void **state) {
     (void)state;
     const size_t numbers[] = {1, 2, 3, 5, 10, 57, 110};
     const sample *list = samples();
-    for (int s = 0; s < SAMPLES; s++)
+    for (int s = 0; s < SAMPLES; s += EFFORT(1, 3))
         for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++) {
             ab_fill *f = cvt(&list[s].shape, numbers[n], 7, numbers[n] > 20 ? 1e-2 : 0, 1);
             near(volume_of(f), list[s].area, 1e-12 * list[s].area);
@@ -116,7 +117,7 @@ static void test_points_stand_at_the_centroids_of_their_cells(void **state) {
     (void)state;
     const sample *list = samples();
     enum { FINE = 700, POINTS = 40 };
-    for (int s = 3; s <= 5; s += 2) { /* a corner that looks inwards, holes */
+    for (int s = 3; s <= EFFORT(5, 3); s += 2) { /* a corner that looks inwards, holes */
         ab_fill *f = cvt(&list[s].shape, POINTS, 3, 1e-6, 1);
         double m[POINTS][6] = {{0}}, step[2];
         for (int k = 0; k < 2; k++) step[k] = (f->high[k] - f->low[k]) / FINE;
@@ -189,8 +190,8 @@ static void test_same_for_any_threads_and_another_for_another_seed(void **state)
     (void)state;
     const sample *list = samples();
     for (int s = 1; s < 6; s += 2) {
-        ab_fill *a = cvt(&list[s].shape, 1200, 11, 5e-2, 1), *b = cvt(&list[s].shape, 1200, 11, 5e-2, 3),
-                *c = cvt(&list[s].shape, 1200, 12, 5e-2, 1);
+        ab_fill *a = cvt(&list[s].shape, EFFORT(1200, 300), 11, 5e-2, 1), *b = cvt(&list[s].shape, EFFORT(1200, 300), 11, 5e-2, 3),
+                *c = cvt(&list[s].shape, EFFORT(1200, 300), 12, 5e-2, 1);
         assert_memory_equal(a->x, b->x, a->count * sizeof *a->x);
         assert_memory_equal(a->y, b->y, a->count * sizeof *a->y);
         assert_memory_equal(a->volume, b->volume, a->count * sizeof *a->volume);
@@ -223,7 +224,7 @@ static void test_surface_stands_near_the_outline(void **state) {
     const sample *list = samples();
     const double mean[SAMPLES] = {1e-12, 1e-12, 1e-12, 0.04, 0.04, 0.04, 0.05, 0.05, 0.05},
                  worst[SAMPLES] = {1e-12, 1e-12, 1e-12, 1, 1, 1, 1, 1, 1};
-    for (int s = 0; s < SAMPLES; s++) {
+    for (int s = 0; s < SAMPLES; s += EFFORT(1, 3)) {
         double sum = 0, length = 0, most = 0;
         for (uint64_t seed = 1; seed <= 2; seed++) {
             ab_fill *f = cvt(&list[s].shape, 400, seed, 2e-2, 1);

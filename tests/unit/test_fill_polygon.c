@@ -1,11 +1,12 @@
 /* test_fill_polygon.c: polygons: exact whatever the lattice cuts, points inside, a surface close to the outline, mirrored and turned shapes alike. */
+#include "effort.h"
 #include "fill_checks.h"
 
 static void test_turned_rectangle_is_the_box_turned(void **state) {
     (void)state;
     const double angles[] = {0, 30, 45, 90, 137, -60};
     for (int rule = AB_FILL_REGULAR; rule <= AB_FILL_GAUSS; rule++)
-        for (int per_cell = 1; per_cell <= 16; per_cell++)
+        for (int per_cell = 1; per_cell <= 16; per_cell += EFFORT(1, 5))
             for (size_t a = 0; a < sizeof angles / sizeof *angles; a++) {
                 const double c = cos(angles[a] * PI / 180), s = sin(angles[a] * PI / 180), m[4] = {c, -s, s, c};
                 double flat[4][2] = {{-0.8, 0.3}, {1.4, 0.3}, {1.4, 1.25}, {-0.8, 1.25}}, v[4][2];
@@ -30,7 +31,7 @@ static void test_right_angled_polygons_fit_the_lattice(void **state) {
     };
     const size_t count[] = {6, 6, 8};
     for (int rule = AB_FILL_REGULAR; rule <= AB_FILL_GAUSS; rule++)
-        for (int per_cell = 1; per_cell <= 16; per_cell++)
+        for (int per_cell = 1; per_cell <= 16; per_cell += EFFORT(1, 5))
             for (size_t s = 0; s < 3; s++)
                 for (int turned = 0; turned < 2; turned++) {
                     const double m[4] = {cos(0.5 * turned), -sin(0.5 * turned), sin(0.5 * turned), cos(0.5 * turned)};
@@ -133,7 +134,7 @@ static void test_mirrored_and_turned_polygons(void **state) {
     const double moves[][4] = {{0, -1, 1, 0}, {-1, 0, 0, 1}, {1, 0, 0, -1}, {0, 1, 1, 0}};
     double slope[][2] = {{0.1, 0}, {10, 0}, {10, 2}, {6, 2}, {3.3, 4}, {0.1, 4.2}}, isosceles[][2] = {{-1, 0}, {1, 0}, {0, 3}}, to[6][2];
     for (int rule = AB_FILL_REGULAR; rule <= AB_FILL_GAUSS; rule++)
-        for (int per_cell = 1; per_cell <= 9; per_cell++)
+        for (int per_cell = 1; per_cell <= 9; per_cell += EFFORT(1, 4))
             for (size_t m = 0; m < 4; m++) {
                 const ab_shape_spec shape = polygon(slope, 6), tip = polygon(isosceles, 3);
                 move_vertices(slope, 6, moves[m], to);

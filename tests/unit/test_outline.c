@@ -1,5 +1,6 @@
 /* test_outline.c: the faces of material-point bodies: loops that close, run the right way round, stand on the outline and enclose its area; and that go with the
  * body. */
+#include "effort.h"
 #include "mpm/outline.h"
 #include "one_body.h"
 
@@ -324,7 +325,7 @@ static void test_the_outline_of_a_turning_box_stays_with_it(void **state) {
     static const char *const BASES[3][2] = {{"gimp", "musl"}, {"gimp", "usl"}, {"linear", "musl"}};
     for (int b = 0; b < 3; b++) {
         double points;
-        const double off = turn(BASES[b][0], BASES[b][1], 1, &points);
+        const double off = turn(BASES[b][0], BASES[b][1], EFFORT(1, 0.25), &points);
         print_message("%s, %s: after a turn vertices are off by %.3f of a cell, points by %.3f\n", BASES[b][0], BASES[b][1], off / 0.5,
                       points / 0.5);
         assert_true(off < 0.07 * 0.5); /* 0.15 to 0.3 were they not drawn to their places */

@@ -1,4 +1,5 @@
 /* test_point_to_segment.c: the finder alone, on surfaces that are drawn here: closest places against a search by force, corners, sides. Areas: test_facing_length.c. */
+#include "effort.h"
 #include "finder_bench.h"
 
 /* ---- closest places ------------------------------------------------------------------------------------------------------------- */
@@ -73,11 +74,7 @@ static bool is_inside(const surface_body *b, const double t[2]) {
 }
 
 static void closest(bool quadratic) {
-#ifdef __SANITIZE_ADDRESS__
-    enum { OUTLINES = 10, PLACES = 1000 }; /* each costs ten times as much, and the answers are the same */
-#else
-    enum { OUTLINES = 40, PLACES = 1000 };
-#endif
+    enum { OUTLINES = EFFORT(40, 10), PLACES = 1000 };
     finder f;
     finder_open(&f, NULL, 0);
     double worst = 0;

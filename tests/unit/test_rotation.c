@@ -1,7 +1,8 @@
 /* test_rotation.c: nodes that turn as a rigid body, 7.5 degrees a step, a hundred times round: the stress turns with the material, nothing else does. */
+#include "effort.h"
 #include "one_body.h"
 
-enum { STEPS_PER_TURN = 48, TURNS = 100 };
+enum { STEPS_PER_TURN = 48, TURNS = EFFORT(100, 10) };
 static const double PI = 3.14159265358979323846;
 
 static const char *scene(const char *basis, const char *update, const char *material) {

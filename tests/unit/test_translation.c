@@ -1,5 +1,6 @@
 /* test_translation.c: a block under uniform stress is carried 100 cells. Its surface is held by what would press on it; the nodes inside are free, and
  * must find the stress balanced wherever they stand in it. */
+#include "effort.h"
 #include "one_body.h"
 
 static const double STRESS[4] = {3, -2, 1, 0.7}, VELOCITY[2] = {1, 0.6};
@@ -52,7 +53,7 @@ static void run(const char *basis, const char *update, double width, double heig
     }
     carried c = {.block = {width, height}};
     memset(worst, 0, 4 * sizeof *worst);
-    const int steps = (int)ceil(100 * body->h / one->step.dt);
+    const int steps = (int)ceil(EFFORT(100, 15) * body->h / one->step.dt);
     for (int s = 0; s < steps; s++) one_body_step(one, carry, &c);
     assert_true(c.inner > (size_t)steps * 10);
     for (size_t slot = 0; slot < body->block_count * 8; slot++) {
