@@ -9,7 +9,8 @@
 #include "core/checkpoint.h"
 #include "core/material.h"
 
-static const double STILL = 1e-10; /* of the largest velocity of an edge: a round that changes none by more was the last */
+static const double STILL =
+    1e-10; /* of the largest velocity of an edge, or of what its impulse alone would give it: a round that changes none by more was the last */
 enum { MOST_ROUNDS = 500 };
 
 typedef struct boundary {
@@ -23,6 +24,8 @@ typedef struct boundary {
     ab_edge_list list;        /* of this step */
     ab_edges view;            /* what the plugin sees */
     double *storage;          /* all the arrays of the view that the host fills or reads, and those below */
+    bool active;              /* in this step; its displacements count from its first one */
+    double *held;             /* Pa, 2 rows: what it carries besides */
     double *moved;            /* m, in the last step */
     double *base;             /* m/s, 2 rows: what of the velocity no dof's velocity of now has a part in */
     double *position, *displacement, *velocity, *traction, *damping, *stiffness, *prescribed, *state0, *state1;
@@ -99,10 +102,26 @@ static ab_status complain(const boundary *b, const ab_step *step, size_t e, cons
                              b->position[b->ld + e], why[0] ? why : "no reason given");
 }
 
+/* From here on displacements are counted, and what the body pulls with is held. */
+static void begin_to_act(boundary *b) {
+    const size_t ld = b->ld;
+    memset(b->displacement, 0, 2 * ld * sizeof(double));
+    memset(b->moved, 0, 2 * ld * sizeof(double));
+    for (size_t c = 0; c < 2; ++c) {
+        memset(b->given[c], 0, ld * sizeof(double));
+        for (size_t e = 0; e < b->count; ++e) b->held[c * ld + e] = b->list.own_traction ? b->list.own_traction[c * b->list.ld + e] : 0.0;
+    }
+}
+
 /* Where edges are and how they move, and what the plugin makes of it. */
 static ab_status ask(const ab_boundaries *all, boundary *b, const ab_step *step, ab_report *report) {
+    const bool began = b->active;
+    b->active =
+        !(step->stage < 64 && (b->spec->absent >> step->stage & 1u)) && (!step->settling || b->spec->loaded->class_.gives & AB_GIVE_MOTION);
+    if (!b->active) return AB_OK;
     AB_TRY(b->domain->ops->edges(b->domain, b->number, step, &b->list, report));
     b->domain->ops->dofs(b->domain, &b->dofs);
+    if (!began) begin_to_act(b);
     const uint32_t gives = b->spec->loaded->class_.gives;
     const size_t ld = b->ld, count = b->count;
     for (size_t e = 0; e < count; ++e) {
@@ -156,6 +175,11 @@ static ab_status ask(const ab_boundaries *all, boundary *b, const ab_step *step,
                 return complain(b, step, e, "prescribed a velocity that is no finite number", report);
         }
     }
+    for (size_t e = 0; e < count; ++e)
+        for (size_t c = 0; c < 2; ++c) {
+            b->traction[c * ld + e] += b->held[c * ld + e];
+            if (step->settling && !isnan(b->prescribed[c * ld + e])) b->prescribed[c * ld + e] = 0.0;
+        }
     return AB_OK;
 }
 
@@ -207,6 +231,7 @@ static double relax(boundary *b, const ab_step *step, size_t e, bool motion_only
     for (size_t c = 0; c < 2; ++c) b->impulse[c * ld + e] += j[c];
     push(b, e, j);
     *largest = fmax(*largest, fmax(fmax(fabs(v[0]), fabs(v[1])), fmax(fabs(b->velocity[e]), fabs(b->velocity[ld + e]))));
+    *largest = fmax(*largest, fmax(fabs(b->impulse[e] * s[0]), fabs(b->impulse[ld + e] * s[1])));
     return fmax(fabs(j[0] * s[0]), fabs(j[1] * s[1]));
 }
 
@@ -216,7 +241,7 @@ static void rounds(ab_boundaries *all, const ab_step *step, bool motion_only) {
         double change = 0.0, largest = 0.0;
         for (size_t k = 0; k < all->count; ++k) {
             boundary *b = all->list + k;
-            if (!(b->spec->loaded->class_.gives & wanted)) continue;
+            if (!b->active || !(b->spec->loaded->class_.gives & wanted)) continue;
             for (size_t e = 0; e < b->count; ++e)
                 if (b->list.area[e] > 0.0) change = fmax(change, relax(b, step, e, motion_only, &largest));
         }
@@ -231,7 +256,7 @@ static ab_status note_springs(ab_boundaries *all, ab_report *report) {
         size_t most = 0;
         for (size_t k = 0; k < all->count; ++k) {
             const boundary *b = all->list + k;
-            if (b->spec->body != body || !(b->spec->loaded->class_.gives & AB_GIVE_STIFFNESS)) continue;
+            if (!b->active || b->spec->body != body || !(b->spec->loaded->class_.gives & AB_GIVE_STIFFNESS)) continue;
             for (size_t i = 0; i < b->list.start[b->count]; ++i) most = b->list.dof[i] >= most ? (size_t)b->list.dof[i] + 1 : most;
         }
         if (most == 0) continue;
@@ -246,7 +271,7 @@ static ab_status note_springs(ab_boundaries *all, ab_report *report) {
             for (size_t k = 0; k < all->count; ++k) {
                 const boundary *b = all->list + k;
                 const ab_edge_list *l = &b->list;
-                if (b->spec->body != body || !(b->spec->loaded->class_.gives & AB_GIVE_STIFFNESS)) continue;
+                if (!b->active || b->spec->body != body || !(b->spec->loaded->class_.gives & AB_GIVE_STIFFNESS)) continue;
                 for (size_t e = 0; e < b->count; ++e) {
                     const double stiffness = l->area[e] * fmax(b->stiffness[e], b->stiffness[b->ld + e]);
                     double row = 0.0;
@@ -271,11 +296,12 @@ ab_status ab_boundaries_apply(ab_boundaries *all, const ab_step *step, ab_report
         springs = springs || (all->list[k].spec->loaded->class_.gives & AB_GIVE_STIFFNESS);
     }
     if (springs) AB_TRY(note_springs(all, report));
-    for (size_t k = 0; k < all->count; ++k) begin_impulses(all->list + k, step);
+    for (size_t k = 0; k < all->count; ++k)
+        if (all->list[k].active) begin_impulses(all->list + k, step);
     rounds(all, step, false);
     for (size_t k = 0; k < all->count; ++k) {
         boundary *b = all->list + k;
-        for (size_t c = 0; c < 2; ++c)
+        for (size_t c = 0; b->active && c < 2; ++c)
             for (size_t e = 0; e < b->count; ++e)
                 b->given[c][e] = b->list.area[e] > 0.0 && !is_held(b, e, c)
                                      ? b->traction[c * b->ld + e] - b->impulse[c * b->ld + e] / (step->dt * b->list.area[e])
@@ -317,14 +343,25 @@ static void book(ab_boundaries *all, boundary *b, const ab_step *step) {
     all->taken[b->spec->body] -= work;
 }
 
+/* Shares of one piece of outline move as the piece does. */
+static void move_together(boundary *b) {
+    const size_t ld = b->ld, group = b->list.group;
+    for (size_t first = 0; first < b->count; first += group)
+        for (size_t c = 0; c < 2; ++c) {
+            double sum = 0.0, area = 0.0;
+            for (size_t e = first; e < first + group; ++e) sum += b->list.area[e] * b->moved[c * ld + e], area += b->list.area[e];
+            for (size_t e = first; e < first + group; ++e) b->moved[c * ld + e] = area > 0.0 ? sum / area : 0.0;
+        }
+}
+
 void ab_boundaries_settle(ab_boundaries *all, const ab_step *step) {
     for (size_t k = 0; k < all->count; ++k) {
         boundary *b = all->list + k;
         const size_t ld = b->ld;
         ab_boundary_totals *t = &b->totals;
-        if (!b->domain->ops->remap) book(all, b, step);
+        if (b->active && !b->domain->ops->remap) book(all, b, step);
         t->force[0] = t->force[1] = t->moment = t->area = 0.0;
-        for (size_t e = 0; e < b->count; ++e) {
+        for (size_t e = 0; b->active && e < b->count; ++e) {
             double v[2];
             velocity_now(b, e, v);
             for (size_t c = 0; c < 2; ++c) {
@@ -335,6 +372,7 @@ void ab_boundaries_settle(ab_boundaries *all, const ab_step *step) {
             t->moment += (b->position[e] * b->impulse[ld + e] - b->position[ld + e] * b->impulse[e]) / step->dt;
             t->area += b->list.area[e];
         }
+        if (b->active && b->list.group > 1) move_together(b);
         all->totals[k] = *t;
     }
 }
@@ -342,7 +380,7 @@ void ab_boundaries_settle(ab_boundaries *all, const ab_step *step) {
 void ab_boundaries_remap(ab_boundaries *all, const ab_step *step) {
     for (size_t k = 0; k < all->count; ++k) {
         boundary *b = all->list + k;
-        if (!b->domain->ops->remap) continue;
+        if (!b->active || !b->domain->ops->remap) continue;
         book(all, b, step);
         all->totals[k] = b->totals;
     }
@@ -379,11 +417,11 @@ static ab_status make(const ab_scene *scene, ab_domain **domains, boundary *b, a
     AB_TRY(b->domain->ops->edges(b->domain, b->number, &start, &b->list, report));
     const size_t count = b->count = b->list.count, ld = b->ld = (count + 7) / 8 * 8;
     for (uint32_t s = 0; s < class_->nstate; ++s) b->states += (size_t)ab_state_components(class_->state[s].shape);
-    const size_t rows = 2 * (2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 1) + 4 + 2 * b->states;
+    const size_t rows = 2 * (2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 2 + 1) + 4 + 2 * b->states;
     double *at = b->storage = calloc(rows * ld + 8, sizeof *b->storage);
     b->flag = calloc(ld + 1, 1);
     if (!at || !b->flag) return ab_report_failure(report, "no memory for %zu edges of boundaries[%zu]", count, b->number);
-    double **const pairs[] = {&b->position, &b->displacement, &b->moved,     &b->base,       &b->velocity,
+    double **const pairs[] = {&b->position, &b->displacement, &b->moved,     &b->held,       &b->base,   &b->velocity,
                               &b->traction, &b->damping,      &b->stiffness, &b->prescribed, &b->impulse};
     for (size_t k = 0; k < sizeof pairs / sizeof *pairs; ++k, at += 2 * ld) *pairs[k] = at;
     for (int c = 0; c < 2; ++c, at += ld) b->given[c] = at;
@@ -464,12 +502,13 @@ static bool keep_one(boundary *b, ab_checkpoint *c) {
     if (count != b->count) return ab_checkpoint_refuse(c, "boundaries[%zu] has %zu edges there and %zu here", b->number, count, b->count);
     ab_boundary_totals *t = &b->totals;
     return keep_rows(c, "displacement", b->displacement, 2, b) && keep_rows(c, "moved", b->moved, 2, b) &&
-           keep_rows(c, "given_x", b->given[0], 1, b) && keep_rows(c, "given_y", b->given[1], 1, b) &&
-           keep_rows(c, "states", b->state1, b->states, b) && ab_keep_doubles(c, "force", t->force, 2) &&
-           ab_keep_doubles(c, "moment", &t->moment, 1) && ab_keep_doubles(c, "impulse", t->impulse, 2) &&
-           ab_keep_doubles(c, "work", &t->work, 1) && ab_keep_doubles(c, "dashpot", &t->dashpot, 1) &&
-           ab_keep_doubles(c, "spring", &t->spring, 1) && ab_keep_doubles(c, "other", &t->other, 1) &&
-           ab_keep_doubles(c, "area", &t->area, 1) && ab_keep_plugin(c, "plugin", &b->spec->loaded->class_, b->self);
+           keep_rows(c, "held", b->held, 2, b) && ab_keep_flags(c, "active", &b->active, 1) && keep_rows(c, "given_x", b->given[0], 1, b) &&
+           keep_rows(c, "given_y", b->given[1], 1, b) && keep_rows(c, "states", b->state1, b->states, b) &&
+           ab_keep_doubles(c, "force", t->force, 2) && ab_keep_doubles(c, "moment", &t->moment, 1) &&
+           ab_keep_doubles(c, "impulse", t->impulse, 2) && ab_keep_doubles(c, "work", &t->work, 1) &&
+           ab_keep_doubles(c, "dashpot", &t->dashpot, 1) && ab_keep_doubles(c, "spring", &t->spring, 1) &&
+           ab_keep_doubles(c, "other", &t->other, 1) && ab_keep_doubles(c, "area", &t->area, 1) &&
+           ab_keep_plugin(c, "plugin", &b->spec->loaded->class_, b->self);
 }
 
 void ab_boundaries_keep(ab_boundaries *all, ab_checkpoint *c) {

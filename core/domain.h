@@ -91,6 +91,8 @@ typedef struct ab_edge_list {
     /* By which changes of the dofs' velocities in this step change the edge's: sum 1; NULL: the weights. Nodes of material points that hardly carry mass are thrown about
      * by stresses that points average over more than reaches them; the mapped velocities that a step begins with know nothing of it. */
     const double *answer;
+    const double *own_traction; /* Pa, 2 rows: what the body's stress pulls with there; where the boundary is to hold it, else NULL */
+    size_t group;               /* so many edges on end are shares of one piece of outline and have its displacement; 0: each is one */
 } ab_edge_list;
 
 /* Elements for results: how a body's points (nodes) hang together. */

@@ -175,6 +175,10 @@ typedef struct ab_boundary_spec { /* a boundary plugin on part of a body's outli
     ab_where where;
     const ab_loaded_class *loaded;
     ab_value *settings;
+    bool nodes;      /* acts at the nodes that its pieces of outline hang on, each with its share; else at the pieces */
+    bool hold;       /* carries besides the traction with which the body's own stress stood there when it began to act */
+    bool on_side;    /* written at a side of the grid: a body that has nothing there is passed over */
+    uint64_t absent; /* a bit for each stage in which it does not act */
 } ab_boundary_spec;
 
 typedef struct ab_monitor_spec {

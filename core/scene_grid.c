@@ -4,6 +4,7 @@
 
 #include "core/scene_reader.h"
 
+enum { BEYOND = 8 };             /* cells that the grid goes on beyond a side with a boundary plugin */
 enum { MOST_CELLS = 100000000 }; /* in one direction; only cells with material cost anything, their numbers must fit */
 
 void ab_scene_take_sides(ab_scene_reader *r, const ab_node *node, const char *where, ab_side_kind side[AB_SIDES]) {
@@ -12,9 +13,13 @@ void ab_scene_take_sides(ab_scene_reader *r, const ab_node *node, const char *wh
     for (int s = 0; s < SIDES_KEYS; s++) {
         const ab_key *key = &ab_section_sides.keys[s];
         if (v[s] != NULL && v[s]->kind == AB_NODE_MAP) {
-            ab_report_error(r->base.report, v[s]->mark,
-                            "%s.%s: boundary plugins at sides are not in this version yet; there is: free, roller, fixed, outflow", where,
-                            key->name);
+            if (side != r->scene->side)
+                ab_report_error(
+                    r->base.report, v[s]->mark,
+                    "%s.%s: boundary plugins at sides are those of the grid; write it there, or under boundaries with stages: [NAME]",
+                    where, key->name);
+            else
+                r->side_boundary[s] = v[s], side[s] = AB_SIDE_FREE;
             continue;
         }
         char *word = NULL;
@@ -69,6 +74,10 @@ void ab_scene_take_grid(ab_scene_reader *r, const ab_node *node) {
     const bool cell = ab_read_number(&r->base, &key[GRID_CELL], v[GRID_CELL], "grid", &scene->grid_cell);
     if (v[GRID_SIDES] != NULL) ab_scene_take_sides(r, v[GRID_SIDES], "grid.sides", scene->side);
     if (from && cell) ab_scene_take_axis(r, v[GRID_FROM]->mark);
+    for (int side = 0; side < AB_SIDES; side++) r->side_at[side] = side % 2 ? scene->grid_to[side / 2] : scene->grid_from[side / 2];
+    for (int side = 0; from && to && cell && side < AB_SIDES; side++) /* what is not held there may move out */
+        if (r->side_boundary[side] != NULL)
+            (side % 2 ? scene->grid_to : scene->grid_from)[side / 2] += (side % 2 ? BEYOND : -BEYOND) * scene->grid_cell;
     if (from && to && cell)
         for (int d = 0; d < 2; d++) count_cells(r, d, v[GRID_TO]->mark);
 }

@@ -142,8 +142,12 @@ static const ab_key sides[] = {
 };
 SECTION(sides, "grid.sides", sides, NULL,
         "`fixed` holds both directions, `roller` the one across the side. A point that leaves through a `free` side stops the run; "
-        "`outflow` counts it out. Sides act on material points; other bodies are held by `fix` and `motion`.",
-        "sides: {left: roller, right: roller, bottom: fixed, top: free}\n");
+        "`outflow` counts it out. Sides act on material points; other bodies are held by `fix` and `motion`. In place of a word a side may "
+        "have a boundary plugin, "
+        "{boundary: NAME, settings ...}: it acts on all of the outlines of material points that lies on that side at the start (as "
+        "`boundaries` does), and "
+        "the grid goes on 8 cells beyond.",
+        "sides: {left: roller, right: {boundary: viscous, a: 1}, bottom: fixed, top: free}\n");
 
 static const ab_key material[] = {
     [MATERIAL_MODEL] = {"model", AB_KEY_NAME, .flags = AB_KEY_REQUIRED, .help = "name of a material plugin (`abut plugins` lists them)"},
@@ -400,6 +404,17 @@ static const ab_key boundary[] = {
                         .help = "part of its outline at the start; it follows the material"},
     [BOUNDARY_PLUGIN] = {"boundary", AB_KEY_NAME, .flags = AB_KEY_REQUIRED,
                          .help = "name of a boundary plugin (`abut plugins` lists them)"},
+    [BOUNDARY_AT] = {"at", AB_KEY_WORD, .words = "points|nodes", .initial = "points",
+                     .help = "points: at the pieces of the outline, through the body's basis; nodes: at the nodes of the grid that these "
+                             "pieces hang on, each with "
+                             "its share of the surface and its own velocity; material-points"},
+    [BOUNDARY_HOLD] =
+        {"hold", AB_KEY_FLAG,
+         .help =
+             "true: it carries besides the traction with which the body's own stress stood there when it began to act, so that what was in "
+             "equilibrium stays so; default: true for plugins with dashpots on bodies of points that begin with a stress, or behind "
+             "another stage"},
+    [BOUNDARY_STAGES] = {"stages", AB_KEY_SECTION, .help = "name of a stage or list of names: it acts in these only; default: in all"},
 };
 SECTION(boundary, "boundaries[i]", boundary, "every setting that the plugin declares (`abut plugins show NAME`)",
         "A list. A boundary plugin turns the state of a piece of outline (place, normal, displacement, velocity, wave speeds) into a "
@@ -598,42 +613,16 @@ SECTION(table, "A setting that is a table", table, NULL,
         "begin with a line of names, with units in brackets. It has at most 64 MiB and 1000000 rows.",
         "velocity: {file: base.csv, columns: [t, vx], units: [s, \"cm/s\"]}\nvelocity: [[0, 0], [0.1, \"2 cm/s\"], [0.2, 0]]\n");
 
-const ab_section *const ab_sections[] = {&ab_section_top,
-                                         &ab_section_damping,
-                                         &ab_section_time,
-                                         &ab_section_stage,
-                                         &ab_section_calm,
-                                         &ab_section_until,
-                                         &ab_section_grid,
-                                         &ab_section_sides,
-                                         &ab_section_material,
-                                         &ab_section_body,
-                                         &ab_section_shape,
-                                         &ab_section_disc,
-                                         &ab_section_ring,
-                                         &ab_section_fill,
-                                         &ab_section_basis,
-                                         &ab_section_transfer,
-                                         &ab_section_surface,
-                                         &ab_section_mesh,
-                                         &ab_section_patch,
-                                         &ab_section_arc,
-                                         &ab_section_initial,
-                                         &ab_section_fix,
-                                         &ab_section_motion,
-                                         &ab_section_contact,
-                                         &ab_section_load,
-                                         &ab_section_boundary,
-                                         &ab_section_where,
-                                         &ab_section_monitor,
-                                         &ab_section_history,
-                                         &ab_section_output,
-                                         &ab_section_expect,
-                                         &ab_section_trade,
-                                         &ab_section_ladder,
-                                         &ab_section_watchdog,
-                                         &ab_section_extremes,
-                                         &ab_section_extreme,
-                                         &ab_section_checkpoint,
-                                         &ab_section_table,
-                                         NULL};
+const ab_section *const ab_sections[] = {&ab_section_top,        &ab_section_damping,  &ab_section_time,
+                                         &ab_section_stage,      &ab_section_calm,     &ab_section_until,
+                                         &ab_section_grid,       &ab_section_sides,    &ab_section_material,
+                                         &ab_section_body,       &ab_section_shape,    &ab_section_disc,
+                                         &ab_section_ring,       &ab_section_fill,     &ab_section_basis,
+                                         &ab_section_transfer,   &ab_section_surface,  &ab_section_mesh,
+                                         &ab_section_patch,      &ab_section_arc,      &ab_section_initial,
+                                         &ab_section_fix,        &ab_section_motion,   &ab_section_contact,
+                                         &ab_section_load,       &ab_section_boundary, &ab_section_where,
+                                         &ab_section_monitor,    &ab_section_history,  &ab_section_output,
+                                         &ab_section_expect,     &ab_section_trade,    &ab_section_ladder,
+                                         &ab_section_watchdog,   &ab_section_extremes, &ab_section_extreme,
+                                         &ab_section_checkpoint, &ab_section_table,    NULL};

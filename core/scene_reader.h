@@ -16,7 +16,9 @@ typedef struct ab_scene_reader {
     ab_reader base;
     ab_scene *scene;
     ab_registry *registry;
-    bool end_by_set; /* time.end came by --set */
+    bool end_by_set;                        /* time.end came by --set */
+    const ab_node *side_boundary[AB_SIDES]; /* boundary plugins at sides of the grid; NULL: none */
+    double side_at[AB_SIDES];               /* m, where the sides were written */
 } ab_scene_reader;
 
 /* One section each; `node` NULL: not written. Mistakes go to the report; what could not be read keeps its default. */

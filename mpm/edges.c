@@ -11,11 +11,13 @@
 #include "core/checkpoint.h"
 #include "mpm/body.h"
 
-enum { ROWS = 8 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds */
+enum { ROWS = 10 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds, own traction 2 */
 
 struct mpm_edges {
     size_t boundary; /* of the scene */
     mpm_load *pieces;
+    size_t pieces_count, group; /* edges of a piece: 1, or as many as its stencil has nodes */
+    bool hold;
     size_t count, ld, room;
     double *rows; /* ROWS x ld */
     size_t *start;
@@ -41,16 +43,18 @@ static ab_status create_one(mpm_body *body, const ab_fill *fill, size_t boundary
             "boundaries[%zu] meets no part of the outline of '%s'; use side: left|right|top|bottom or a place on its outline", boundary,
             body->domain.spec->name);
     struct mpm_edges *e = body->edges + body->edges_count++;
-    *e = (struct mpm_edges){.boundary = boundary, .ld = (count + 7) / 8 * 8};
-    e->room = count * (MPM_STENCIL + MPM_LIGHT_MORE);
-    e->pieces = malloc(count * sizeof *e->pieces);
+    const size_t group = spec->nodes ? (size_t)(body->kernel->nodes * body->kernel->nodes) : 1, pieces = count;
+    count *= group;
+    *e = (struct mpm_edges){.boundary = boundary, .group = group, .hold = spec->hold, .count = count, .ld = (count + 7) / 8 * 8};
+    e->room = spec->nodes ? count : count * (MPM_STENCIL + MPM_LIGHT_MORE);
+    e->pieces = malloc(pieces * sizeof *e->pieces);
     e->rows = calloc(ROWS * e->ld, sizeof *e->rows);
     e->start = calloc(count + 1, sizeof *e->start);
     e->dof = malloc(e->room * sizeof *e->dof);
     e->weight = malloc(e->room * sizeof *e->weight);
     e->answer = malloc(e->room * sizeof *e->answer);
     if (!e->pieces || !e->rows || !e->start || !e->dof || !e->weight || !e->answer || !mpm_points_index(body) ||
-        !mpm_load_pieces(fill, &spec->where, true, (uint32_t)boundary, e->pieces, &e->count))
+        !mpm_load_pieces(fill, &spec->where, true, (uint32_t)boundary, e->pieces, &e->pieces_count))
         return no_memory(body, count, report);
     const double density = body->material->density;
     for (size_t k = 0; k < e->ld; ++k) {
@@ -109,33 +113,63 @@ static void answers(const mpm_body *body, const uint32_t *dof, const double *wei
     for (size_t i = 0; i < count; ++i) answer[i] = sum > 0.0 ? answer[i] / sum : weight[i];
 }
 
+/* Pa: stress of the point under a piece . normal. Between the point and the face the weight of what lies there is added, along the normal. */
+static void own_traction(const mpm_body *body, const mpm_load *piece, const double n[2], double density, const double gravity[2],
+                         double t[2]) {
+    const uint32_t slot = body->slot[piece->id];
+    const double *point = mpm_block(body, slot / 8) + slot % 8, *stress = point + 8 * ROW_STRESS;
+    const double away = (piece->now[0] - point[8 * ROW_X]) * n[0] + (piece->now[1] - point[8 * (ROW_X + 1)]) * n[1];
+    const double weight = body->gravity ? -density * (gravity[0] * n[0] + gravity[1] * n[1]) * away : 0.0;
+    t[0] = stress[0] * n[0] + stress[24] * n[1] + weight * n[0];
+    t[1] = stress[24] * n[0] + stress[8] * n[1] + weight * n[1];
+}
+
+/* Each node of a piece's stencil by itself, with its share of the area. */
+static void share_out(const mpm_body *body, struct mpm_edges *e, size_t piece, double area) {
+    uint32_t dof[MPM_STENCIL + MPM_LIGHT_MORE];
+    double weight[MPM_STENCIL + MPM_LIGHT_MORE];
+    const size_t count = stencil_of(body, e->pieces + piece, dof, weight);
+    for (size_t g = 0; g < e->group; ++g) {
+        const size_t k = piece * e->group + g, at = e->start[k];
+        const bool there = g < count && weight[g] > 0.0;
+        e->rows[4 * e->ld + k] = there ? weight[g] * area : 0.0;
+        e->start[k + 1] = at + there;
+        if (there) e->dof[at] = dof[g], e->weight[at] = e->answer[at] = 1.0;
+    }
+}
+
 ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_edge_list *list, ab_report *report) {
-    (void)step, (void)report;
+    (void)report;
     mpm_body *body = (mpm_body *)domain;
     struct mpm_edges *e = body->edges;
     while (e->boundary != boundary) ++e;
     const size_t ld = e->ld;
-    double *x = e->rows, *normal = x + 2 * ld, *area = x + 4 * ld, *density = x + 5 * ld;
-    for (size_t k = 0; k < e->count; ++k) {
-        mpm_load *piece = e->pieces + k;
-        const size_t at = e->start[k];
-        e->start[k + 1] = at;
+    double *x = e->rows, *normal = x + 2 * ld, *area = x + 4 * ld, *density = x + 5 * ld, *traction = x + 8 * ld;
+    for (size_t p = 0; p < e->pieces_count; ++p) {
+        mpm_load *piece = e->pieces + p;
+        const size_t first = p * e->group, at = e->start[first];
         const uint32_t slot = body->slot[piece->id];
-        area[k] = 0.0;
+        for (size_t k = first; k < first + e->group; ++k) e->start[k + 1] = at, area[k] = 0.0;
         if (slot == UINT32_MAX) continue; /* gone; what is known of it stays */
         mpm_load_place(body, e->pieces, piece);
         const double half = hypot(piece->stretch[0], piece->stretch[1]), *point = mpm_block(body, slot / 8) + slot % 8;
-        for (size_t c = 0; c < 2; ++c) x[c * ld + k] = piece->now[c];
-        density[k] = point[8 * ROW_MASS] / point[8 * ROW_VOLUME];
         if (!(half > 0.0)) continue;
-        normal[k] = piece->stretch[1] / half;
-        normal[ld + k] = -piece->stretch[0] / half;
-        area[k] = 2.0 * half * (body->axisymmetric ? ab_circumference(piece->now[0] + body->origin[0]) : 1.0);
-        e->start[k + 1] = at + stencil_of(body, piece, e->dof + at, e->weight + at);
-        if (e->start[k + 1] == at)
-            area[k] = 0.0;
-        else
-            answers(body, e->dof + at, e->weight + at, e->start[k + 1] - at, e->answer + at);
+        const double n[2] = {piece->stretch[1] / half, -piece->stretch[0] / half}, rho = point[8 * ROW_MASS] / point[8 * ROW_VOLUME],
+                     size = 2.0 * half * (body->axisymmetric ? ab_circumference(piece->now[0] + body->origin[0]) : 1.0);
+        double t[2] = {0.0, 0.0};
+        if (e->hold) own_traction(body, piece, n, rho, step->gravity, t);
+        for (size_t k = first; k < first + e->group; ++k) {
+            for (size_t c = 0; c < 2; ++c) x[c * ld + k] = piece->now[c], normal[c * ld + k] = n[c], traction[c * ld + k] = t[c];
+            density[k] = rho;
+        }
+        if (e->group > 1) {
+            share_out(body, e, p, size);
+            continue;
+        }
+        e->start[p + 1] = at + stencil_of(body, piece, e->dof + at, e->weight + at);
+        if (e->start[p + 1] == at) continue;
+        area[p] = size;
+        answers(body, e->dof + at, e->weight + at, e->start[p + 1] - at, e->answer + at);
     }
     *list = (ab_edge_list){.count = e->count,
                            .ld = ld,
@@ -148,13 +182,15 @@ ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
                            .start = e->start,
                            .dof = e->dof,
                            .weight = e->weight,
-                           .answer = e->answer};
+                           .answer = e->answer,
+                           .own_traction = e->hold ? traction : NULL,
+                           .group = e->group};
     return AB_OK;
 }
 
 void mpm_edges_follow(mpm_body *body, const ab_step *step) {
     for (size_t n = 0; n < body->edges_count; ++n)
-        for (size_t k = 0; k < body->edges[n].count; ++k)
+        for (size_t k = 0; k < body->edges[n].pieces_count; ++k)
             if (body->slot[body->edges[n].pieces[k].id] != UINT32_MAX) mpm_load_follow(body, step, body->edges[n].pieces + k);
 }
 
@@ -162,7 +198,7 @@ size_t mpm_edges_bytes(const mpm_body *body) {
     size_t bytes = 0;
     for (size_t n = 0; n < body->edges_count; ++n) {
         const struct mpm_edges *e = body->edges + n;
-        bytes += sizeof *e + e->count * (sizeof *e->pieces + sizeof *e->start) + ROWS * e->ld * sizeof *e->rows +
+        bytes += sizeof *e + e->pieces_count * sizeof *e->pieces + e->count * sizeof *e->start + ROWS * e->ld * sizeof *e->rows +
                  e->room * (sizeof *e->dof + 2 * sizeof *e->weight);
     }
     return bytes;
@@ -173,14 +209,14 @@ bool mpm_edges_keep(mpm_body *body, ab_checkpoint *c) {
     bool good = true;
     for (size_t n = 0; good && n < body->edges_count; ++n) {
         struct mpm_edges *e = body->edges + n;
-        double *shape = malloc(4 * e->count * sizeof *shape);
-        if (!shape) return ab_checkpoint_refuse(c, "no memory for %zu edges", e->count);
-        for (size_t k = 0; k < e->count; ++k)
+        double *shape = malloc(4 * e->pieces_count * sizeof *shape);
+        if (!shape) return ab_checkpoint_refuse(c, "no memory for %zu edges", e->pieces_count);
+        for (size_t k = 0; k < e->pieces_count; ++k)
             memcpy(shape + 4 * k, e->pieces[k].arm, 2 * sizeof *shape), memcpy(shape + 4 * k + 2, e->pieces[k].half, 2 * sizeof *shape);
         ab_checkpoint_enter(c, "edges_%zu", n);
-        good = ab_keep_doubles(c, "pieces", shape, 4 * e->count);
+        good = ab_keep_doubles(c, "pieces", shape, 4 * e->pieces_count);
         ab_checkpoint_leave(c);
-        for (size_t k = 0; good && k < e->count; ++k)
+        for (size_t k = 0; good && k < e->pieces_count; ++k)
             memcpy(e->pieces[k].arm, shape + 4 * k, 2 * sizeof *shape), memcpy(e->pieces[k].half, shape + 4 * k + 2, 2 * sizeof *shape);
         free(shape);
     }
