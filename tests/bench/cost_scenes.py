@@ -36,6 +36,14 @@ def two(side, steps, apart=0, first="points"):
     return scene
 
 
+def staged(scene):
+    """A copy with its time as the one stage."""
+    scene = copy.deepcopy(scene)
+    time = scene.pop("time")
+    scene["stages"] = [{"name": "all", "duration": time["end"], "dt": time["dt"]}]
+    return scene
+
+
 def put(scene, path, value):
     """A copy with one value changed or added: put(scene, "bodies.block.basis", "linear")."""
     scene = copy.deepcopy(scene)
@@ -69,6 +77,8 @@ def switched_off(side, steps):
         pair("`surface: domains`", one, put(one, "bodies.block.surface", "domains")),
         pair("all `sides: free`", one, put(one, "grid.sides", {"left": "free", "right": "free", "bottom": "free", "top": "free"})),
         pair("`watchdog: {stop: false}`", one, put(one, "watchdog", {"stop": False})),
+        pair("`boundaries: []`", one, put(one, "boundaries", [])),
+        pair("`stages`, one of them, in place of `time`", one, staged(one)),
         pair("a `trade` block", one, put(one, "trade", {"tolerance": 0.01})),
         pair("empty grid x 1000", one, put(one, "grid.to", [(side + 24) * 32, (2 * side + 24) * 32])),
         pair("a contact of bodies 12 cells apart", apart, touching(apart, response="coulomb", friction=0.3)),
@@ -90,6 +100,7 @@ def switched_on(side, steps):
         ("loads", "gravity", one, put(one, "gravity", [0, -9.81])),
         ("loads", "local damping", one, put(one, "damping", {"local": 0.1})),
         ("loads", "body force, a formula of t, x, y", one, put(one, "bodies.block.body_force", ["sin(x+t)", "cos(y)"])),
+        ("loads", "a viscous boundary on one side", one, put(one, "boundaries", [{"on": "block", "where": {"side": "bottom"}, "boundary": "viscous"}])),
         ("loads", "traction on one side", one, put(one, "loads", [traction])),
         ("results", "a row of history at every step (the ledger added up)", one, put(one, "history", {"every": 1})),
         ("results", "and a monitor, over all points", put(one, "history", {"every": 1}),
@@ -103,6 +114,7 @@ def switched_on(side, steps):
         ("points", "`basis: cpdi`", one, put(one, body + "basis", "cpdi")),
         ("points", "`update: usl`", one, put(one, body + "update", "usl")),
         ("points", "`update: usf`", one, put(one, body + "update", "usf")),
+        ("points", "`update: usavg`", one, put(one, body + "update", "usavg")),
         ("points", "`transfer: apic`", one, put(one, body + "transfer", "apic")),
         ("points", "`transfer: {xpic: 2}`", one, put(one, body + "transfer", {"xpic": 2})),
         ("points", "`transfer: {fmpm: 2}`", one, put(one, body + "transfer", {"fmpm": 2})),
