@@ -90,8 +90,8 @@ def large(build, folder):
     print("| way | foot | echo | energy left | foot moves, m |\n| --- | --- | --- | --- | --- |")
     for foot in ("viscous", "viscoelastic, r_b: 20", "fixed"):
         for way in ("q4", "q8", "linear", "linear, nodes", "gimp", "gimp, nodes", "bspline2", "cpdi"):
-            if foot == "fixed" and way.endswith("nodes"):
-                continue
+            if way.endswith("nodes") and (foot == "fixed" or way.startswith("gimp") and foot != "viscous"):
+                continue  # springs at nodes without mass: the step falls to 4e-9 s
             try:
                 text, c = column(way.replace(",", ""), "P", 300e3, 0.25, foot)
                 late, left, moved = echo(run(build, text, folder), c, 300e3)
