@@ -49,6 +49,9 @@ expect run 1 "turned inside out .*dt is above the limit of the mesh as it is now
 expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
 expect check 2 "contact: body 'stone' is a single material point" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
+expect check 0 "warning: bodies.block: at its speed along x, [0-9.e-]+ m/s, it leaves the grid through its right side at about [0-9.e+]+ s, before time.end" crossings 'grid.to=[20, 3]'
+expect check 0 - crossings 'grid.to=[20, 3]' 'grid.sides={right: outflow}'
+expect check 0 - crossings
 # one element, a corner of which is pushed through its diagonal: first nearly inside out, then, where that is let go on, turned
 cat >pushed_in.yaml <<'SCENE'
 abut: 1
