@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 15
+# cost: 8
 # Killed with -9 at any moment, in the middle of writing a frame or between two, a run leaves every frame it had finished: read by h5py and by
 # meshio without any repair. test_kill.sh BUILD
 set -eu
@@ -22,7 +22,7 @@ history: {every: 1}
 output: {every: 1e-4, fields: [stress, velocity]}
 SCENE
 listed() { grep -c '<Time ' "$1/results.xdmf" 2>/dev/null || true; }
-for round in 1 2 3 4 5 6 7 8; do
+for round in 1 2 3 4; do # many more, and restarted: test_restart_kill.sh
     out=$scratch/$round
     "$build/abut" run "$scratch/scene.yaml" --quiet -j 1 -o "$out" >"$out.log" 2>&1 &
     run=$!
@@ -40,4 +40,4 @@ for round in 1 2 3 4 5 6 7 8; do
     [ "$(listed "$out")" -ge "$before" ] || { echo "results.xdmf lost frames"; exit 1; }
     rm -rf "$out"
 done
-echo "8 killed runs are readable"
+echo "4 killed runs are readable"
