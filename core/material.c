@@ -133,6 +133,8 @@ int ab_material_start_from(const ab_material_spec *material, void *self, const d
         for (int c = 0; c < ab_state_components(class_->state[s].shape); ++c, ++row)
             for (int l = 0; l < 8; ++l) batch.state0[row][l] = batch.state1[row][l] = class_->state[s].initial;
     int code = loaded->material.start ? loaded->material.start(self, &batch.view) : 0;
+    for (int l = 0; l < 8; ++l)
+        if (code != 0 && batch.flag[l]) borne[0][l] = NAN;
     if (code != 0) return code;
     memcpy(start->stress, stress, sizeof start->stress);
     memcpy(start->state, batch.state1, sizeof start->state);
@@ -141,6 +143,8 @@ int ab_material_start_from(const ab_material_spec *material, void *self, const d
     batch.view.dt = 1.0; /* without strain, however long */
     code = loaded->material.update(self, &batch.view);
     memcpy(borne, batch.stress1, sizeof batch.stress1);
+    for (int l = 0; l < 8; ++l)
+        if (code != 0 && batch.flag[l]) borne[0][l] = NAN;
     start->wave_speed = 0.0;
     for (int l = 0; l < 8; ++l) start->wave_speed = fmax(start->wave_speed, batch.speed[l]);
     return code;

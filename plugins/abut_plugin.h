@@ -175,7 +175,8 @@ typedef struct ab_batch {
 
 typedef struct ab_material_ops {
     uint32_t struct_size;
-    int (*start)(void *self, ab_batch *batch);  /* optional. Before the first step: may set stress1, state1; wave_speed is always asked for.
+    int (*start)(void *self, ab_batch *batch);  /* optional. Before the first step: may set stress1, state1; wave_speed is always asked for. stress0 is the stress that
+                                                   the scene gives (initial), 0 where it gives none: states that follow from it are set by it, stress1 is it.
                                                    Without it stress starts at 0, states at `initial`, and update must give the wave speed. */
     int (*update)(void *self, ab_batch *batch); /* from several threads at once */
 } ab_material_ops;

@@ -208,9 +208,34 @@ static int update(void *self, ab_batch *b) {
     return status;
 }
 
+/* Begins with the stress of stress0: the ellipse through it, larger by the overconsolidation. False: it is not under pressure. */
+static bool begin_with(const law *l, ab_batch *b, size_t i) {
+    double stress[6] = {0}, square = 0.0;
+    for (uint32_t k = 0; k < b->components; k++) stress[k] = b->stress0[k * b->ld + i];
+    const double p = -(stress[0] + stress[1] + stress[2]) / 3;
+    if (!(p > VANISHED * l->pressure)) return false;
+    for (int k = 0; k < 6; k++) {
+        const double s = k < 3 ? stress[k] + p : stress[k];
+        square += (k < 3 ? 1.5 : 3.0) * s * s;
+    }
+    for (uint32_t k = 0; k < b->components; k++) b->stress1[k * b->ld + i] = stress[k];
+    b->state1[PRECONSOLIDATION_ROW * b->ld + i] = l->preconsolidation / l->pressure * (p + square / (l->M * l->M * p));
+    b->state1[VOID_ROW * b->ld + i] = l->v - 1.0;
+    b->state1[PLASTIC_ROW * b->ld + i] = 0.0;
+    b->wave_speed[i] = wave_speed(l, l->v, p, b->density[i]);
+    return true;
+}
+
 static int start(void *self, ab_batch *b) {
     const law *l = self;
     for (size_t i = 0; i < b->count; i++) {
+        bool given = false;
+        for (uint32_t k = 0; k < b->components; k++) given = given || b->stress0[k * b->ld + i] != 0.0;
+        if (given && begin_with(l, b, i)) continue;
+        if (given) {
+            b->flag[i] = 1;
+            return refuse(l->host, "the clay has no stiffness without pressure: its mean stress must be below 0; give a surcharge");
+        }
         for (uint32_t k = 0; k < b->components; k++) b->stress1[k * b->ld + i] = k < 3 ? -l->pressure : 0.0;
         b->state1[PRECONSOLIDATION_ROW * b->ld + i] = l->preconsolidation;
         b->state1[VOID_ROW * b->ld + i] = l->v - 1.0;
@@ -229,7 +254,7 @@ static const ab_param params[] = {
     {"nu", "1", "Poisson's ratio, with a shear modulus in proportion to the bulk modulus; this or G", NULL, AB_REAL,
      AB_MIN_OPEN | AB_MAX_OPEN, 0, -1, 0.5},
     {"void_ratio", "1", "void ratio at the start", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
-    {"pressure", "Pa", "pressure at the start, the same all around; walls or loads must bear it", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN,
+    {"pressure", "Pa", "pressure at the start, the same all around; walls or loads must bear it. Where the scene gives the stress at the start (initial), that is taken", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN,
      0, 0, INFINITY},
     {"overconsolidation", "1", "largest pressure that the clay has borne, over the pressure at the start", NULL, AB_REAL, 0, 1, 1,
      INFINITY},
