@@ -15,7 +15,7 @@ const ab_stage_spec *ab_stages_spec(const ab_schedule *s) { return s->scene->sta
 
 bool ab_stages_done(const ab_schedule *s) {
     const bool last = !s->stages || s->stages->now + 1 >= s->scene->stage_count;
-    return last && (!(s->time < s->end) || (s->stages && s->stages->met));
+    return last && !(s->time < s->end);
 }
 
 /* s: how long the first mode of the slowest body is that asks for the stress of gravity; or what the scene says. */
@@ -83,6 +83,7 @@ void ab_stages_fill(const ab_schedule *s, ab_step *step) {
     step->damping = step->time < spec->local_until ? spec->local : 0.0;
     step->measure = spec->has_until;
     step->settling = spec->made;
+    step->from_rest = s->stages->from_rest;
     if (spec->made) step->time = -0.5 * step->dt; /* formulas are taken at the middle of a step: at t = 0 */
     for (int c = 0; c < s->scene->dimension; ++c)
         step->gravity[c] = part * ab_number_at(s->scene->gravity + c, spec->made ? 0.0 : middle, 0.0, 0.0, 0.0);
@@ -92,6 +93,7 @@ void ab_stages_fill(const ab_schedule *s, ab_step *step) {
 static void rest(ab_schedule *s, const ab_step *step) {
     for (size_t b = 0; b < s->body_count; ++b)
         if (s->domains[b]->ops->rest) s->domains[b]->ops->rest(s->domains[b], step);
+    s->stages->from_rest = true;
     ab_schedule_look(s);
 }
 
@@ -133,11 +135,12 @@ static ab_status missed(const ab_schedule *s, ab_report *report) {
 ab_status ab_stages_after(ab_schedule *s, const ab_step *step, ab_report *report) {
     ab_stages *k = s->stages;
     const ab_stage_spec *spec = ab_stages_spec(s);
+    k->from_rest = false;
     if (spec->has_until) {
         measure(s, step);
         const bool grown = spec->gravity != AB_GRAVITY_RAMP || !(s->time < s->begin + k->ramp);
         k->calm = grown && k->force_ratio <= spec->unbalanced && k->energy_ratio <= spec->at_rest ? k->calm + 1 : 0;
-        if (k->calm >= CALM_STEPS) k->met = true;
+        if (k->calm >= CALM_STEPS) k->met = true, s->time = s->end; /* the clock leaves the rest out */
         if (!k->met && !(s->time < s->end)) AB_TRY(missed(s, report));
     }
     if (spec->kinetic && s->total.kinetic < k->kinetic) rest(s, step);
@@ -148,7 +151,7 @@ ab_status ab_stages_after(ab_schedule *s, const ab_step *step, ab_report *report
 ab_status ab_stages_next(ab_schedule *s, bool *datum, ab_report *report) {
     ab_stages *k = s->stages;
     *datum = false;
-    if ((s->time < s->end && !k->met) || k->now + 1 >= s->scene->stage_count) return AB_OK;
+    if (s->time < s->end || k->now + 1 >= s->scene->stage_count) return AB_OK;
     const ab_stage_spec *spec = ab_stages_spec(s);
     ab_step step = {.time = s->time - s->dt, .dt = s->dt, .number = s->number - 1};
     ab_stages_fill(s, &step);
@@ -159,6 +162,7 @@ ab_status ab_stages_next(ab_schedule *s, bool *datum, ab_report *report) {
             if (s->domains[b]->ops->datum) AB_TRY(s->domains[b]->ops->datum(s->domains[b], report));
     }
     *k = (ab_stages){.now = k->now + 1,
+                     .from_rest = k->from_rest,
                      .gravity_begin = gravity_at(s, s->end),
                      .external = s->total.external,
                      .potential = s->total.potential,
@@ -181,7 +185,7 @@ bool ab_stages_keep(ab_schedule *s, ab_checkpoint *c) {
     for (size_t n = 0; n < COUNT; ++n) values[n] = *numbers[n];
     size_t now = k->now;
     if (!ab_keep_size(c, "stage", &now) || !ab_keep_doubles(c, "stage_numbers", values, COUNT) || !ab_keep_long(c, "stage_calm", &calm) ||
-        !ab_keep_long(c, "stage_first_step", &s->first_step) || !ab_keep_flags(c, "stage_met", &k->met, 1))
+        !ab_keep_long(c, "stage_first_step", &s->first_step) || !ab_keep_flags(c, "stage_from_rest", &k->from_rest, 1) || !ab_keep_flags(c, "stage_met", &k->met, 1))
         return false;
     if (!ab_checkpoint_loads(c)) return true;
     if (now >= s->scene->stage_count) return ab_checkpoint_refuse(c, "its stage %zu is none of the scene", now);

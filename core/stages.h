@@ -15,6 +15,7 @@ typedef struct ab_stages { /* where the run is in its stages */
     double force_ratio, energy_ratio; /* as measured last; NaN: not measured */
     int calm;                         /* steps on end that met both */
     bool met;                         /* the stage is over before its time */
+    bool from_rest;                   /* all velocities were set to zero after the last step */
 } ab_stages;
 
 /* Of a scene with stages: the first one is entered, before the first step. */

@@ -173,7 +173,8 @@ void fem_nodes_force(fem_body *body) {
 }
 
 void fem_nodes_trial(fem_body *body, const ab_step *step) {
-    const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0}, dt = step->dt;
+    const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0},
+                 dt = step->from_rest ? 0.5 * step->dt : step->dt;
 #pragma omp parallel for schedule(static) num_threads(body->threads)
     for (size_t i = 0; i < body->nodes; ++i)
         for (size_t c = 0; c < 2; ++c) {
@@ -276,6 +277,8 @@ void fem_nodes_finish(fem_body *body, const ab_step *step) {
         body->node_sums[r] = s;
     }
     sum_motion(body);
+    /* Forces gave half of what their work over the whole step is booked as: the rest, as large as what they gave, goes with what the stop has taken. */
+    if (step->from_rest) body->energy.damping += body->energy.kinetic;
 }
 
 void fem_nodes_measure(fem_body *body) {

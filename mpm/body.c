@@ -205,6 +205,8 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     motion.angular_momentum[2] += body->origin[0] * motion.momentum[1] - body->origin[1] * motion.momentum[0];
     body->motion = motion;
     body->energy.kinetic = kinetic;
+    /* Forces gave half of what their work over the whole step is booked as: the rest, as large as what they gave, goes with what the stop has taken. */
+    if (step->from_rest) body->energy.damping += body->energy.kinetic;
     body->largest_speed = sqrt(speed2);
     AB_TRY(mpm_too_far(body, step, false, report)); /* first: a point that was thrown is not one for which the grid is too small */
     if (!isfinite(kinetic)) AB_TRY(look_outside(body, step, report));

@@ -55,7 +55,7 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
 
 void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
     const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
-    const double dt = forces ? step->dt : 0.0;
+    const double dt = forces ? step->from_rest ? 0.5 * step->dt : step->dt : 0.0;
     const bool hoops = body->axisymmetric;
 #pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
     for (size_t k = 0; k < body->tile_count; ++k) {
