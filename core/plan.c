@@ -127,6 +127,36 @@ static bool surface_points(const ab_scene *scene) {
     return false;
 }
 
+static bool damps(const ab_scene *scene) {
+    for (size_t k = 0; k < scene->stage_count; k++)
+        if (scene->stages[k].local > 0.0 || scene->stages[k].kinetic) return true;
+    return scene->damping_local > 0.0;
+}
+
+/* "gravity (ramp), local damping 0.7, until at rest, then displacements from zero" */
+static void stage_words(const ab_stage_spec *stage, char *words, size_t size) {
+    char gravity[40] = "", damping[80] = "";
+    if (stage->gravity != AB_GRAVITY_KEEP)
+        snprintf(gravity, sizeof gravity, ", gravity: %s", stage->gravity == AB_GRAVITY_OFF ? "off" : "ramp");
+    if (stage->local > 0.0) snprintf(damping, sizeof damping, ", local damping %g", stage->local);
+    snprintf(words, size, "%s%s%s%s%s%s", gravity, damping, stage->kinetic ? ", kinetic damping" : "",
+             stage->has_until ? ", ends where it is at rest" : "", stage->zero_velocities ? ", velocities to zero at its end" : "",
+             stage->zero_displacements ? ", displacements counted anew from its end" : "");
+}
+
+/* Where K0 is from, for bodies that begin with it. */
+static void initial_words(const ab_body_spec *body, char *words, size_t size) {
+    const ab_initial_spec *initial = &body->initial;
+    words[0] = '\0';
+    if (initial->kind == AB_INITIAL_K0) {
+        snprintf(words, size, "begins with K0 = %.4g (%s)", initial->k0, initial->rule ? initial->rule : "");
+        const size_t used = strlen(words);
+        if (initial->surcharge != 0.0) snprintf(words + used, size - used, " under %g Pa", initial->surcharge);
+    }
+    if (initial->kind == AB_INITIAL_STRESS) snprintf(words, size, "begins with the stress of the scene");
+    if (initial->kind == AB_INITIAL_GRAVITY) snprintf(words, size, "begins with the stress of gravity, by a stage before t = 0");
+}
+
 /* What a scene might cost and this one does not. */
 static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text) {
     const ab_scene *scene = schedule->scene;
@@ -160,7 +190,7 @@ static void each_left_out(const ab_schedule *schedule, item tell, ab_text *text)
         tell(text, number++, "empty grid", what, NULL);
     }
     if (scene->grid_cell == 0.0) tell(text, number++, "grid", "no body and no contact looks at one", NULL);
-    if (scene->damping_local == 0.0) tell(text, number++, "damping", "none is asked for", NULL);
+    if (!damps(scene)) tell(text, number++, "damping", "none is asked for", NULL);
     if (!scene->load_count) tell(text, number++, "loads", "no traction is asked for: no surface pass", NULL);
     if (!scene->has_checkpoint)
         tell(text, number++, "checkpoints", "none is asked for: the state is saved only where a signal or the watchdog stops the run",
@@ -263,6 +293,16 @@ void ab_plan_add_json(ab_text *text, const ab_schedule *schedule, const ab_run_o
         add_words(text, ", \"passes\": ", body.passes);
         ab_text_add(text, "}");
     }
+    if (scene->stage_count) ab_text_add(text, "],\n  \"stages\": [");
+    for (size_t k = 0; k < scene->stage_count; k++) {
+        const ab_stage_spec *stage = scene->stages + k;
+        char words[256];
+        stage_words(stage, words, sizeof words);
+        add_string(text, k ? ",\n    {\"name\": " : "\n    {\"name\": ", stage->name);
+        add_number(text, ", \"end\": ", stage->end);
+        add_words(text, ", \"does\": ", words[0] ? words + 2 : "");
+        ab_text_add(text, "}");
+    }
     ab_text_add(text, "],\n  \"contacts\": [");
     for (size_t c = 0; c < scene->contact_count; c++) {
         const ab_contact_spec *contact = &scene->contacts[c];
@@ -350,6 +390,9 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
             ab_text_add(text, "seen on the grid (%zu tiles), ", body.tiles);
         add_bytes(text, body.bytes);
         ab_text_add(text, " in all\n    fields: %s\n    each step: %s\n", body.fields, body.passes);
+        char begins[160];
+        initial_words(scene->bodies + b, begins, sizeof begins);
+        if (begins[0]) ab_text_add(text, "    %s\n", begins);
     }
     if (scene->contact_count) ab_text_add(text, "\nContacts\n");
     for (size_t c = 0; c < scene->contact_count; c++) {
@@ -361,6 +404,12 @@ void ab_plan_add_text(ab_text *text, const ab_schedule *schedule, const ab_run_o
                     contact->responder ? contact->responder->class_.name : contact->finder->class_.name,
                     contact->finder->class_.needs & AB_NEED_SHARED_NODES ? ", where their tiles meet" : "");
         if (needs[0]) ab_text_add(text, "    needs: %s\n", needs);
+    }
+    if (scene->stage_count) ab_text_add(text, "\nStages\n");
+    for (size_t k = 0; k < scene->stage_count; k++) {
+        char words[256];
+        stage_words(scene->stages + k, words, sizeof words);
+        ab_text_add(text, "  %s: to t = %g s%s\n", scene->stages[k].name, scene->stages[k].end, words);
     }
     ab_text_add(text, "\nPlugins\n");
     each_plugin(scene, text_plugin, text);

@@ -53,7 +53,9 @@ static bool add(char *line, size_t size, int width, const char *part) {
 /* Parts keep their widths while their numbers change, so that a bar stands still. */
 void ab_progress_format(const ab_progress *p, const ab_state_view *view, int width, char *line, size_t size) {
     const double part = share(p, view);
-    char bar[24] = "", left[24], parts[8][256];
+    char bar[24] = "", left[24], parts[9][256];
+    const ab_scene *scene = view->scene;
+    const bool staged = scene != NULL && scene->stage_count > 0;
     if (p->terminal && width >= 60) {
         const int cells = width < 110 ? 10 : 20, full = (int)(cells * part);
         bar[0] = ' ';
@@ -69,9 +71,12 @@ void ab_progress_format(const ab_progress *p, const ab_state_view *view, int wid
     snprintf(parts[5], sizeof parts[5], "  step %ld", view->step);
     snprintf(parts[6], sizeof parts[6], "  dt %.2e s", view->dt);
     snprintf(parts[7], sizeof parts[7], " (%.200s)", view->limit != NULL ? view->limit : "as given");
+    snprintf(parts[8], sizeof parts[8], "  stage %.64s", staged ? scene->stages[view->stage].name : "");
     line[0] = '\0';
-    for (int k = 0; k < 8; k++)
+    for (int k = 0; k < 8; k++) {
+        if (k == 1 && staged && !add(line, size, width, parts[8])) return;
         if (!add(line, size, width, parts[k])) return;
+    }
 }
 
 static void measure(ab_progress *p, const ab_state_view *view, double clock) {

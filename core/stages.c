@@ -185,7 +185,8 @@ bool ab_stages_keep(ab_schedule *s, ab_checkpoint *c) {
     for (size_t n = 0; n < COUNT; ++n) values[n] = *numbers[n];
     size_t now = k->now;
     if (!ab_keep_size(c, "stage", &now) || !ab_keep_doubles(c, "stage_numbers", values, COUNT) || !ab_keep_long(c, "stage_calm", &calm) ||
-        !ab_keep_long(c, "stage_first_step", &s->first_step) || !ab_keep_flags(c, "stage_from_rest", &k->from_rest, 1) || !ab_keep_flags(c, "stage_met", &k->met, 1))
+        !ab_keep_long(c, "stage_first_step", &s->first_step) || !ab_keep_flags(c, "stage_from_rest", &k->from_rest, 1) ||
+        !ab_keep_flags(c, "stage_met", &k->met, 1))
         return false;
     if (!ab_checkpoint_loads(c)) return true;
     if (now >= s->scene->stage_count) return ab_checkpoint_refuse(c, "its stage %zu is none of the scene", now);

@@ -182,6 +182,10 @@ ab_status ab_summary_write(const ab_results *results, const ab_state_view *view,
     ab_text_add(&text, ", \"limit\": ");
     ab_text_add_escaped(&text, view->limit);
     ab_text_add(&text, "}");
+    if (scene->stage_count > 0) {
+        key(&text, "stage", false);
+        ab_text_add_escaped(&text, scene->stages[view->stage].name);
+    }
     key(&text, "frames", false);
     ab_text_add(&text, "%zu", ab_frames_count(results->frames));
     key(&text, "ledger", false);
