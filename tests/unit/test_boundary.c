@@ -39,8 +39,8 @@ static const ab_domain_ops BODY = {.method = "made up", .edges = edges, .dofs = 
 static const ab_domain_ops BARE = {.method = "bare", .dofs = dofs};
 
 static void make_body(three *b, const ab_body_spec *spec) {
-    static const double MASS[3] = {2.0, 1e-9, 3.0}; /* the middle one is next to nothing */
-    *b = (three){.domain = {.ops = &BODY, .spec = spec, .dimension = 2}, .start = {0, 2, 4}, .dof = {0, 1, 1, 2}, .weight = {0.75, 0.25, 0.25, 0.75}};
+    static const double MASS[3] = {2.0, 1e-3, 3.0}; /* the middle one is light, and has as little weight as a basis gives such a node: w^2/m is that of the others */
+    *b = (three){.domain = {.ops = &BODY, .spec = spec, .dimension = 2}, .start = {0, 2, 4}, .dof = {0, 1, 1, 2}, .weight = {0.98, 0.02, 0.02, 0.98}};
     for (size_t k = 0; k < 6; ++k) b->inverse[k] = 1.0 / MASS[k / 2];
     for (size_t e = 0; e < 8; ++e) b->normal[8 + e] = -1.0, b->area[e] = 0.5, b->density[e] = 2000.0, b->p_speed[e] = 200.0, b->s_speed[e] = 100.0;
 }
@@ -133,15 +133,15 @@ static void test_a_traction_is_a_force_and_its_work_is_booked(void **state) {
     const ab_boundary_totals *t = ab_boundaries_totals(b.boundaries);
     assert_near(t->force[0], 3.0, 1e-12); /* two edges of 0.5 m */
     assert_near(t->force[1], -5.0, 1e-12);
-    assert_near(b.body.velocity[0] - b.body.old[0], 1e-3 * 0.5 * 0.75 * 3.0 / 2.0, 1e-15);
-    assert_near(t->work, kinetic(&b.body, b.body.velocity) - before, 1e-12 * t->work);
+    assert_near(b.body.velocity[0] - b.body.old[0], 1e-3 * 0.5 * 0.98 * 3.0 / 2.0, 1e-15);
+    assert_near(t->work, kinetic(&b.body, b.body.velocity) - before, 1e-12 * fabs(t->work));
     assert_near(ab_boundaries_taken(b.boundaries, 0), -t->work, 0.0);
     close_bench(&b);
 }
 
 static void test_damping_is_taken_at_the_mean_velocity_and_only_takes(void **state) {
     (void)state;
-    static const double FACTORS[] = {1e-3, 1.0, 1e3, 1e9};
+    static const double FACTORS[] = {1e-3, 1.0, 1e3, 1e5};
     for (size_t f = 0; f < 4; ++f) {
         bench b;
         open_bench(&b, AB_GIVE_TRACTION | AB_GIVE_DAMPING);
@@ -150,13 +150,13 @@ static void test_damping_is_taken_at_the_mean_velocity_and_only_takes(void **sta
         const double before = kinetic(&b.body, b.body.velocity);
         double old[2][2], now[2][2];
         for (int e = 0; e < 2; ++e)
-            for (int c = 0; c < 2; ++c) old[e][c] = 0.75 * b.body.old[4 * e + c] + 0.25 * b.body.old[2 + c];
+            for (int c = 0; c < 2; ++c) old[e][c] = 0.98 * b.body.old[4 * e + c] + 0.02 * b.body.old[2 + c];
         assert_int_equal(step(&b), AB_OK);
         const ab_boundary_totals *t = ab_boundaries_totals(b.boundaries);
         double force[2] = {0.0, 0.0};
         for (int e = 0; e < 2; ++e)
             for (int c = 0; c < 2; ++c) {
-                now[e][c] = 0.75 * b.body.velocity[4 * e + c] + 0.25 * b.body.velocity[2 + c];
+                now[e][c] = 0.98 * b.body.velocity[4 * e + c] + 0.02 * b.body.velocity[2 + c];
                 force[c] -= 0.5 * answer.damping[1 - c] * 0.5 * (old[e][c] + now[e][c]);
             }
         for (int c = 0; c < 2; ++c) assert_near(t->force[c], force[c], 1e-6 * (fabs(force[c]) + answer.damping[0] * 1e-3));
@@ -174,7 +174,7 @@ static void test_what_is_prescribed_is_reached_and_the_rest_is_free(void **state
     answer.prescribed[0] = 0.7, answer.prescribed[1] = NAN;
     for (int k = 0; k < 6; ++k) b.body.old[k] = b.body.velocity[k] = 0.1 * k;
     assert_int_equal(step(&b), AB_OK);
-    for (int e = 0; e < 2; ++e) assert_near(0.75 * b.body.velocity[4 * e] + 0.25 * b.body.velocity[2], 0.7, 1e-8);
+    for (int e = 0; e < 2; ++e) assert_near(0.98 * b.body.velocity[4 * e] + 0.02 * b.body.velocity[2], 0.7, 1e-8);
     for (int k = 1; k < 6; k += 2) assert_near(b.body.velocity[k], 0.1 * k, 0.0);
     close_bench(&b);
 }
