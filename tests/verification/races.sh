@@ -77,6 +77,8 @@ timeout 300 "$build/abut" run "$all" --quiet -j 2 -o "$scratch/restarted" --set 
 judge "a restart" $? "$scratch/restart.log"
 races axisymmetric tests/verification/axi_two_tubes.yaml time.end=T/20 expect=[]
 races turned tests/verification/incline_turned.yaml time.end=0.004 constants.settle=0.002 expect=[]
+races boundaries_of_points tests/verification/boundary_cavity.yaml time.end=0.02*b/c expect=[]
+races boundaries_of_elements tests/verification/boundary_pulse_fe.yaml time.end=0.002 expect=[]
 races belt tests/verification/rigid_belt.yaml expect=[] 'time={end: 1e-3, cfl: 0.5}'
 
 if [ "${2:-}" = all ]; then
