@@ -73,14 +73,14 @@ static void take_name(reading *r, const ab_cell *from, header_cell *to) {
         const char *unit = open + 1 + strspn(open + 1, " ");
         const bool pure = strcmp(unit, "-") == 0 || *unit == '\0';
         if (close == ']' || pure || ab_units_known(r->reader->units, unit)) {
-            snprintf(to->unit, sizeof to->unit, "%s", pure ? "1" : unit);
+            snprintf(to->unit, sizeof to->unit, "%.*s", NAME - 1, pure ? "1" : unit);
             *open = '\0';
         } else
             text[length - 1] = close;
     }
     size_t end = strlen(text);
     while (end > 0 && text[end - 1] == ' ') text[--end] = '\0';
-    snprintf(to->name, sizeof to->name, "%s", text);
+    snprintf(to->name, sizeof to->name, "%.*s", NAME - 1, text);
 }
 
 static bool keep_header(reading *r, const ab_cell *cells, size_t count, int number) {
