@@ -94,6 +94,12 @@ void ab_scene_check_initial(ab_scene_reader *r) {
     for (size_t b = 0; b < scene->body_count; b++) {
         const ab_body_spec *body = scene->bodies + b;
         const ab_initial_spec *initial = &body->initial;
+        for (size_t k = 0; k < scene->stage_count; k++)
+            if (scene->stages[k].kinetic && body->update != NULL && strcmp(body->update, "usf") == 0)
+                ab_report_error(r->base.report, scene->stages[k].mark,
+                                "stage '%s': kinetic damping would lose the strain that body '%s' has yet to see, as update usf strains a step "
+                                "behind; use update musl or usl there, or damping: {local: 0.7}",
+                                scene->stages[k].name != NULL ? scene->stages[k].name : "", body->name);
         const bool stands = is_zero(&body->velocity[0]) && is_zero(&body->velocity[1]);
         if (made && !stands)
             ab_report_error(

@@ -127,6 +127,7 @@ refuses 2 "has no rule of its own for K0" "$scratch/clay.yaml" --set 'bodies.gro
 refuses 2 "its mean stress must be below 0" "$scratch/clay.yaml" --set 'bodies.ground.initial.surcharge=-20 kPa'
 refuses 2 "the scene has no gravity" $ground --set constants.g=0
 refuses 2 "write gravity: keep there" tests/verification/k0_slope.yaml --set 'stages[0].gravity=ramp'
+refuses 2 "kinetic damping would lose the strain" $column --set bodies.ground.update=usf
 refuses 2 "there is no stage 'gravty'; did you mean 'gravity'?" tests/verification/fe_stages_column.yaml --set 'bodies.ground.fix[2].stages=gravty'
 refuses 2 "the scene has no stages" "$scratch/elements.yaml" --set 'loads[0].stages=first'
 exit $wrong
