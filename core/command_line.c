@@ -151,7 +151,8 @@ static int read_option(const ab_command *command, const option_text *option, cha
         return read_pair(command, value, line->overrides, &line->override_count, "--set wants PATH=VALUE, not '%s'",
                          "for example --set contact[0].friction=0.3");
     case AB_OPTION_VARY:
-        return read_pair(command, value, line->vary, &line->vary_count, "--vary wants PATH=VALUE,VALUE,..., not '%s'",
+        return read_pair(command, value, line->vary, &line->vary_count,
+                         "--vary wants PATH=VALUE,VALUE,... (extremes: or PATH=FROM..TO), not '%s'",
                          "for example --vary constants.cells=20,40,80");
     case AB_OPTION_TOLERANCE: return read_positive(command, value, &line->tolerance, "--tolerance wants an error above 0, not '%s'");
     case AB_OPTION_SECONDS: return read_positive(command, value, &line->seconds, "--seconds wants a time above 0, not '%s'");

@@ -171,7 +171,7 @@ static const ab_key body[] = {
     [BODY_UPDATE] =
         {"update", AB_KEY_WORD, .words = "usf|usl|musl|usavg", .initial = "musl",
          .help = "when stress is updated: first, last, last from mapped-back velocities; usavg: half first and half last, which makes no "
-                 "energy however far a body flies, for nearly twice the work"},
+                 "energy however far a body flies, for 1.7 times the work"},
     [BODY_F_BAR] = {"f_bar", AB_KEY_WORD, .words = "false|cell|patch", .initial = "false",
                     .help =
                         "against locking where volume is kept (nu near 0.5, plastic flow): the change of volume and the pressure are "
