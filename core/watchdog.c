@@ -74,7 +74,8 @@ ab_status ab_watchdog_step(ab_schedule *s, ab_report *report) {
     for (int c = 0; c < 3; ++c) momentum2 += s->watch_momentum[c] * s->watch_momentum[c];
     /* as seen from the common centre of mass: what all bodies fly with together is nothing they can give */
     began += fmax(kinetic - (mass > 0.0 ? 0.5 * momentum2 / mass : 0.0), ROUNDING * kinetic);
-    s->watch_external = fmax(s->watch_external, fabs(s->total.external));
+    s->watch_external =
+        fmax(s->watch_external, fabs(s->total.external) + fmax(-s->total.boundary, 0.0)); /* bases that shake give by way of boundaries */
     s->watch_potential = fmax(s->watch_potential, fabs(s->total.potential - potential));
     const double given = began + s->watch_external + s->watch_potential;
     s->watch_count = remainder > s->scene->watch_energy * given && given > 0.0 ? s->watch_count + 1 : 0;
