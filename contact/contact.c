@@ -104,6 +104,7 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
     ab_points *p = &points->view;
     contact_side side[2];
     contact_sides(pair, side);
+    points->give = points->gives ? contact_give(stage) : 0.0;
     if (!contact_points_prepare(points, side)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
     for (size_t c = 0; c < 2; ++c) {
         memset(p->impulse + c * p->ld, 0, p->count * sizeof(double));
@@ -117,9 +118,12 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
         points->relative_old[p->ld + i] = v[1];
     }
     if (!points->surfaces) return AB_OK;
+    if (points->gives && stage == AB_STAGE_DYNAMIC && !contact_light_dofs(&points->light, side))
+        return ab_report_failure(report, "no memory for what %zu contact points push on", p->count);
     const bool done = stage == AB_STAGE_DYNAMIC ? begin_with_last_forces(pair, side, step->dt, HISTORY_FORCE, NULL)
                                                 : begin_with_last_forces(pair, side, step->dt, HISTORY_STRAIN,
                                                                          contact_history(pair, answered) + HISTORY_STATUS * p->ld);
+    for (size_t c = 0; points->gives && c < 2; ++c) memcpy(points->begun + c * p->ld, p->impulse + c * p->ld, p->count * sizeof(double));
     return done ? AB_OK : ab_report_failure(report, "no memory for %zu contact points", p->count);
 }
 
@@ -335,6 +339,8 @@ static double softer_density(const ab_scene *scene, const contact_pair *pair) {
 /* Its places of contact stay on it as it moves: those of points drift a little against the velocities that move them. */
 static bool is_mesh(const ab_domain *body) { return ab_domain_is_rigid(body) || body->ops->cells; }
 
+static bool is_of_points(const ab_domain *body) { return body->ops->node_tiles && !is_mesh(body); }
+
 /* True where a monitor shows areas of a contact, or pressures. */
 static bool shows_area(const ab_scene *scene, size_t contact) {
     for (size_t k = 0; k < scene->monitor_count; ++k) {
@@ -374,6 +380,9 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         for (int side = 1; side >= 0; --side)
             if (pair->points.surfaces && scene->bodies[spec->body[side]].surface_points > 0.0)
                 pair->points.spread = (contact_spread){.wanted = true, .side = side};
+        /* Not by surface points: they are no more than the freedoms under them. */
+        pair->points.gives = pair->points.surfaces && !pair->points.spread.wanted && (is_of_points(pair->a) || is_of_points(pair->b)) &&
+                             !(spec->responder->class_.needs & AB_NEED_GAP);
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.view.measure_area = (ab_response_needs(spec) & AB_NEED_AREA) || shows_area(scene, k);
         pair->points.states = HISTORY;

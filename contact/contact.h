@@ -33,12 +33,26 @@ typedef struct contact_spread {
     size_t ld, dofs;
 } contact_spread;
 
+/* light_dofs.c: dofs with next to no mass under points from surfaces */
+typedef struct contact_light_dof {
+    uint32_t dof;
+    double weight, velocity[2]; /* of all points it serves; weight x m/s of what it goes with */
+    double left[2];             /* N s beyond that */
+} contact_light_dof;
+typedef struct contact_light {
+    contact_light_dof *list;
+    uint32_t *place; /* by dof: where in the list, UINT32_MAX: not */
+    size_t count, capacity, dofs;
+} contact_light;
+
 /* Contact points of one pair of bodies, and what the loop keeps beside them. Arrays over points; component c of point i is a[c*ld + i]. */
 typedef struct contact_points {
     ab_points view;              /* what plugins see */
     double *relative_old;        /* relative velocity at the start of the step */
     double *applied;             /* impulse that the dofs have felt already; the loop applies the difference */
     double *change, *direction;  /* of the impulses: in the last round, and where the rounds are going */
+    double *begun;               /* impulses that a stage began with, where points give way: those of the last step */
+    double give;                 /* inverse mass with which points give way to a change of their impulse, as a part of their own; 0: not */
     size_t stencil_a, stencil_b; /* capacity of the stencils */
     size_t states;               /* rows of history: the response's, then the loop's own HISTORY rows */
     bool shared;                 /* some dof serves more than one point: one point after the other, and again until impulses stand still */
@@ -46,12 +60,14 @@ typedef struct contact_points {
     bool surfaces;     /* points come from surfaces, not from shared nodes */
     bool axisymmetric; /* finders work in the plane; areas are those of rings */
     bool meshes;       /* both bodies are meshes or rigid */
+    bool gives;        /* bodies of points by surfaces: see rounds.c */
     bool distances;    /* the response needs them */
     uint64_t *old_key; /* of the last step, ascending, with their states: history */
     double *old_state;
     size_t old_count, old_capacity;
     contact_sums sums;
     contact_spread spread;
+    contact_light light;
     double *carried; /* area that each point's impulse acts on, where shared nodes are asked for areas: carried.c */
     size_t carried_capacity;
     uint32_t *seen; /* by dof: the last look for shared dofs that met it */
@@ -135,6 +151,7 @@ void contact_watch_depth(contact_pair *, ab_report *);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);
+double contact_give(ab_stage); /* contact_points.give of bodies of points by surfaces */
 
 /* spread.c: room for forces, rows of ld (NULL: no memory); and their sharing, in place, with positive weights alone. False: no memory */
 double *contact_spread_room(contact_points *);
@@ -142,6 +159,10 @@ bool contact_spread_forces(contact_points *, const contact_side side[2]);
 /* Shares out the step's forces, for what is reported: fills the last two rows; the largest pressure, Pa. */
 double contact_spread_pressure(contact_points *, const contact_side side[2], const double *normal, const double *tangential);
 void contact_spread_destroy(contact_spread *);
+
+/* light_dofs.c: before the impulses of the dynamic stage. False: no memory */
+bool contact_light_dofs(contact_light *, const contact_side side[2]);
+void contact_light_destroy(contact_light *);
 
 /* share.c */
 bool contact_share_sums(contact_points *); /* into state0, from the states of the last step; false: no memory */
@@ -160,6 +181,6 @@ bool contact_keep_spread(contact_points *, struct ab_checkpoint *);
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */
 void contact_points_destroy(contact_points *);
 bool contact_points_prepare(contact_points *, const contact_side side[2]); /* effective masses, history; false: no memory */
-bool contact_points_remember(contact_points *); /* false: no memory */
+bool contact_points_remember(contact_points *);                            /* false: no memory */
 
 #endif

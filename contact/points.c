@@ -32,6 +32,7 @@ bool contact_points_reserve(contact_points *points, size_t count, size_t stencil
             !resize(&state0, s, s, old, n, sizeof(double)) || !resize(&v->state1, s, s, old, n, sizeof(double)) ||
             !resize(&points->relative_old, 2, 2, old, n, sizeof(double)) || !resize(&points->applied, 2, 2, old, n, sizeof(double)) ||
             !resize(&points->change, 2, 2, old, n, sizeof(double)) || !resize(&points->direction, 2, 2, old, n, sizeof(double)) ||
+            (points->gives && !resize(&points->begun, 2, 2, old, n, sizeof(double))) ||
             !resize(&v->a_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)) ||
             !resize(&v->b_start, 1, 1, old ? old + 1 : 0, n + 1, sizeof(size_t)))
             return false;
@@ -61,11 +62,12 @@ void contact_points_destroy(contact_points *points) {
         free((void *)(uintptr_t)v->relative_velocity), free((void *)(uintptr_t)v->normal_mass);
     free((void *)(uintptr_t)v->tangential_mass), free(v->impulse), free((void *)(uintptr_t)v->state0), free(v->state1),
         free(points->relative_old);
-    free(points->applied), free(points->change), free(points->direction), free(v->a_start), free(v->b_start);
+    free(points->applied), free(points->change), free(points->direction), free(points->begun), free(v->a_start), free(v->b_start);
     free(v->a_dof), free(v->a_weight), free(v->b_dof), free(v->b_weight), free(points->old_key), free(points->old_state);
     free(points->seen), free(points->carried);
     contact_sums_destroy(&points->sums);
     contact_spread_destroy(&points->spread);
+    contact_light_destroy(&points->light);
 }
 
 /* Where a side of the grid holds one direction of both bodies, only the other is left: it is the normal's or the tangent's, whichever lies closer (within 60
@@ -181,7 +183,7 @@ bool contact_points_prepare(contact_points *points, const contact_side side[2]) 
         if (!points->surfaces) fit_normal_to_sides(v, i, side);
         const double n[2] = {v->normal[i], v->normal[v->ld + i]}, t[2] = {-n[1], n[0]};
         const double in = contact_inverse_mass(side, i, n, &held), it = contact_inverse_mass(side, i, t, &held);
-        const double share = share_of_mass(side, i, n, in, it, !points->surfaces, &held);
+        const double share = share_of_mass(side, i, n, in, it, !points->surfaces, &held) / (1.0 + points->give);
         mn[i] = in > 0.0 ? share / in : 0.0;
         mt[i] = it > 0.0 ? share / it : 0.0;
     }
