@@ -13,6 +13,13 @@ import cost_scenes
 missed = 0
 
 
+def history():
+    """The rows of history.csv without the name of their stage, which only scenes with stages have."""
+    rows = [line.split(",") for line in open("out/history.csv").read().splitlines()]
+    kept = [k for k, name in enumerate(next(row for row in rows if row[0] == "t")) if name != "stage"]
+    return [[row[k] for k in kept] if len(row) > kept[-1] else row for row in rows]
+
+
 def abut(scene):
     """Plan of a scene, and the history and ledger that its run leaves."""
     cost_scenes.write(scene, "scene.yaml")
@@ -21,7 +28,7 @@ def abut(scene):
     summary = json.load(open("out/summary.json"))
     paid = [[(b["name"], b["bytes"], b["fields"], b["passes"]) for b in plan["bodies"]], [c["passes"] for c in plan["contacts"]], plan["boundary_passes"],
             [p["name"] for p in plan["plugins"]]]
-    return paid, (open("out/history.csv").read(), summary["ledger"], summary["motion"]), set(summary["phase_seconds"])
+    return paid, (history(), summary["ledger"], summary["motion"]), set(summary["phase_seconds"])
 
 
 def must(what, good):
