@@ -289,10 +289,58 @@ static ab_status note_springs(ab_boundaries *all, ab_report *report) {
     return AB_OK;
 }
 
+/* What moves an edge must be alone with it. Nodes that a side of the grid or a support holds would have to be torn from that: none but edges at rest can have them. */
+static ab_status refuse_held(const boundary *b, ab_report *report) {
+    static const double NEARLY_ALL = 0.9; /* of an edge's weight */
+    for (size_t e = 0; e < b->count; ++e)
+        for (size_t c = 0; c < 2; ++c) {
+            if (!(b->list.area[e] > 0.0) || !is_held(b, e, c) || b->prescribed[c * b->ld + e] == 0.0) continue;
+            double held = 0.0, weight = 0.0;
+            for (size_t i = b->list.start[e]; i < b->list.start[e + 1]; ++i) {
+                const double w = fabs(b->list.weight[i]);
+                weight += w;
+                if (b->dofs.inverse_mass[b->list.dof[i] * b->dofs.mass_stride + c] == 0.0) held += w;
+            }
+            if (held > NEARLY_ALL * weight)
+                return ab_report_error(
+                    report, b->spec->mark,
+                    "boundaries[%zu] (%s) says how '%s' moves along %c near (%.6g, %.6g) m, where a side of the grid or `fix` "
+                    "holds it: take one of the two away",
+                    b->number, b->spec->loaded->class_.name, b->domain->spec->name, c ? 'y' : 'x', b->position[e], b->position[b->ld + e]);
+        }
+    return AB_OK;
+}
+
+/* Once: two that say how the same edge moves. */
+static ab_status refuse_two(const ab_boundaries *all, const boundary *b, ab_report *report) {
+    static const double SAME = 1e-9; /* of an edge's size */
+    for (size_t k = 0; k < b->number; ++k) {
+        const boundary *o = all->list + k;
+        if (!o->active || o->domain != b->domain || !(o->spec->loaded->class_.gives & AB_GIVE_MOTION)) continue;
+        for (size_t e = 0; e < b->count; ++e)
+            for (size_t f = 0; f < o->count; ++f) {
+                const double x = b->position[e], y = b->position[b->ld + e];
+                const bool along = is_held(b, e, 0) && is_held(o, f, 0), across = is_held(b, e, 1) && is_held(o, f, 1);
+                if ((along || across) && hypot(o->position[f] - x, o->position[o->ld + f] - y) <= SAME * b->list.area[e])
+                    return ab_report_error(
+                        report, b->spec->mark,
+                        "boundaries[%zu] and boundaries[%zu] both say how '%s' moves along %c near (%.6g, %.6g) m: keep one "
+                        "of them there",
+                        o->number, b->number, b->domain->spec->name, along ? 'x' : 'y', x, y);
+            }
+    }
+    return AB_OK;
+}
+
 ab_status ab_boundaries_apply(ab_boundaries *all, const ab_step *step, ab_report *report) {
     bool springs = false;
     for (size_t k = 0; k < all->count; ++k) {
+        const bool began = all->list[k].active;
         AB_TRY(ask(all, all->list + k, step, report));
+        if (all->list[k].active && (all->list[k].spec->loaded->class_.gives & AB_GIVE_MOTION)) {
+            AB_TRY(refuse_held(all->list + k, report));
+            if (!began) AB_TRY(refuse_two(all, all->list + k, report));
+        }
         springs = springs || (all->list[k].spec->loaded->class_.gives & AB_GIVE_STIFFNESS);
     }
     if (springs) AB_TRY(note_springs(all, report));

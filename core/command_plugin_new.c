@@ -34,9 +34,21 @@ static ab_status check_name(const char *name, ab_report *report) {
     bool good = length > 0 && length <= NAME_MAX_ && islower((unsigned char)name[0]) && name[length - 1] != '-';
     for (size_t i = 0; good && i < length; i++)
         good = islower((unsigned char)name[i]) || isdigit((unsigned char)name[i]) || (name[i] == '-' && name[i + 1] != '-');
-    static const char *const taken[] = {"law",   "create",  "destroy", "update", "find", "reach", "respond", "apply", "params", "states",
-                                        "ops",   "classes", "main",    "int",    "long", "for",   "if",      "do",    "auto",   "double",
-                                        "float", "char",    "short",   "union",  "enum", "const", "static",  "struct"};
+    static const char *const taken[] = {
+        /* of the source that is written */
+        "law", "create", "destroy", "update", "find", "reach", "respond", "apply", "params", "states", "ops", "classes", "class", "main",
+        "size-t", "offsetof",
+        /* of C and C++ */
+        "auto", "bool", "break", "case", "char", "const", "continue", "default", "delete", "do", "double", "else", "enum", "extern",
+        "false", "float", "for", "goto", "if", "inline", "int", "long", "new", "private", "register", "restrict", "return", "short",
+        "signed", "sizeof", "static", "struct", "switch", "this", "true", "typedef", "union", "unsigned", "void", "volatile", "while",
+        /* of its mathematics */
+        "abs", "acos", "asin", "atan", "cbrt", "ceil", "cos", "cosh", "div", "erf", "exp", "exp2", "expm1", "fabs", "floor", "fma", "fmax",
+        "fmin", "fmod", "gamma", "hypot", "isnan", "j0", "j1", "jn", "lgamma", "log", "log10", "log2", "pow", "rint", "round", "signgam",
+        "sin", "sinh", "sqrt", "tan", "tanh", "tgamma", "trunc", "y0", "y1", "yn"};
+    if (good && (strncmp(name, "ab-", 3) == 0 || strncmp(name, "abut-", 5) == 0))
+        return ab_report_error(report, AB_NOWHERE, "'%s': names that begin with ab- or abut- are those of the interface; take another",
+                               name);
     for (size_t k = 0; good && k < sizeof taken / sizeof *taken; k++)
         if (strcmp(name, taken[k]) == 0)
             return ab_report_error(report, AB_NOWHERE, "'%s' has a meaning in the source that is to be written; take another name", name);

@@ -125,6 +125,8 @@ static void find_side(const ab_edges *e, double *bottom, double *top) {
     *top = fmax(middle + 0.5 * area, high);
 }
 
+static const double LEANING = 0.5; /* of a side that is upright still: the normal's part along y */
+
 static int build(column *k, const ab_edges *e) {
     double bottom = 0.0, top = 0.0;
     forget(k);
@@ -132,6 +134,9 @@ static int build(column *k, const ab_edges *e) {
     if (k->has_bottom) bottom = k->bottom;
     if (k->has_top) top = k->top;
     const double wanted = (top - bottom) / k->spacing;
+    for (size_t i = 0; i < e->count; ++i)
+        if (e->area[i] > 0.0 && fabs(e->normal[e->ld + i]) > LEANING)
+            return fail(k->host, "free-field stands beside upright sides, and this one looks up or down; name an upright one in `where`");
     if (!(wanted > 0.0) || !isfinite(wanted))
         return fail(k->host, "the side has no height: free-field stands beside upright sides; or write bottom and top");
     if (wanted > MOST_ELEMENTS) return fail(k->host, "more than 100000 elements in the free-field column; use a larger spacing");

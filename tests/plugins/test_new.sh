@@ -21,6 +21,8 @@ refused() { # PATTERN WORDS...: exit 2 with a line that matches
 }
 refused "did you mean 'material'" materail clay
 refused 'finds contact points or responds' contact clay
+refused 'has a meaning in the source' boundary sqrt
+refused 'are those of the interface' material ab-host
 refused 'takes a kind' material
 refused 'cannot be the name' material Clay
 refused 'cannot be the name' material ../clay

@@ -26,6 +26,19 @@ refused "has no column 'v' \(line 2\)" --set 'boundaries[0].acceleration={file: 
 refused "'s' here, and 'ms' in the header" --set 'boundaries[0].acceleration={file: base_sine.csv, units: [s, cm/s2]}'
 refused 'a record is missing' --set 'boundaries[0].acceleration=[[0, 1]]' --set 'boundaries[0].factor=1' --set 'boundaries[0]={on: column, where: {side: bottom}, boundary: base-motion}'
 
+stopped() { # PATTERN [--set ...]: the run ends before its first step, exit 1 or 2, with a line that matches
+    local pattern=$1
+    shift
+    "$build/abut" run base_rigid.yaml --quiet -j 1 -o stopped "$@" >said.txt 2>&1
+    [ $? -ne 0 ] && grep -qE -- "$pattern" said.txt || say "$*: wanted '$pattern': $(cat said.txt)"
+}
+base='{on: column, where: {side: bottom}, boundary: base-motion, direction: y, acceleration: {file: base_sine.csv}}'
+stopped 'both say how .column. moves along' --set "boundaries=[$base, $base]"
+stopped 'free-field stands beside upright sides' --set 'boundaries=[{on: column, where: {side: bottom}, boundary: free-field, spacing: 0.25, base: compliant, velocity: [[0, 0], [1, 1]]}]'
+sed 's/^  from:.*/  from: [0, 0]/; s/from: \[[^]]*\]/from: [0, 0]/' base_rigid.yaml >held.yaml
+"$build/abut" run held.yaml --quiet -j 1 -o stopped --set grid.sides.bottom=fixed >said.txt 2>&1
+[ $? -eq 2 ] && grep -q 'where a side of the grid or .fix. holds it' said.txt || say "a base that a side holds: $(cat said.txt)"
+
 ran() { # NAME ARGUMENTS...: into folder NAME
     local name=$1
     shift
