@@ -105,7 +105,7 @@ static void test_centre_of_mass_is_that_of_the_shape(void **state) {
     const sample *list = samples();
     const double centre[4][2] = {{0.25, 2.5}, {3, -2}, {0, 0}, {5.0 / 6, 5.0 / 6}};
     for (int s = 0; s < 4; s++) {
-        ab_fill *f = cvt(&list[s].shape, 300, 1, 0, 1);
+        ab_fill *f = cvt(&list[s].shape, EFFORT(300, 80), 1, 0, 1);
         near(moment_of(f, f->x), list[s].area * centre[s][0], 1e-12);
         near(moment_of(f, f->y), list[s].area * centre[s][1], 1e-12);
         ab_fill_destroy(f);
@@ -189,9 +189,9 @@ static void same(const ab_fill *a, const ab_fill *b, double scale, double x, dou
 static void test_same_for_any_threads_and_another_for_another_seed(void **state) {
     (void)state;
     const sample *list = samples();
-    for (int s = 1; s < 6; s += 2) {
-        ab_fill *a = cvt(&list[s].shape, EFFORT(1200, 300), 11, 5e-2, 1), *b = cvt(&list[s].shape, EFFORT(1200, 300), 11, 5e-2, 3),
-                *c = cvt(&list[s].shape, EFFORT(1200, 300), 12, 5e-2, 1);
+    for (int s = 1; s < EFFORT(6, 4); s += 2) {
+        ab_fill *a = cvt(&list[s].shape, EFFORT(1200, 120), 11, 5e-2, 1), *b = cvt(&list[s].shape, EFFORT(1200, 120), 11, 5e-2, 3),
+                *c = cvt(&list[s].shape, EFFORT(1200, 120), 12, 5e-2, 1);
         assert_memory_equal(a->x, b->x, a->count * sizeof *a->x);
         assert_memory_equal(a->y, b->y, a->count * sizeof *a->y);
         assert_memory_equal(a->volume, b->volume, a->count * sizeof *a->volume);
@@ -299,7 +299,7 @@ static void test_extreme_sizes_and_numbers_work(void **state) {
     } list[] = {{&tiny, PI * 1e-18}, {&thin, PI * (1 - 0.9999 * 0.9999)}, {&strip, 1},
                 {&huge, 2e24},       {&sharp, shoelace(needle, 3)},       {&teeth, shoelace(comb, 102)}};
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-        for (size_t n = 1; n <= 60; n = 3 * n + 2) {
+        for (size_t n = 1; n <= EFFORT(60, 20); n = 3 * n + 2) {
             ab_report *report = ab_report_create();
             const ab_fill_request request = {
                 .rule = AB_FILL_CVT, .per_cell = 4, .cell = 1e20, .points = n, .tolerance = 0.05, .iterations = 40};
