@@ -8,7 +8,7 @@
  * threads ever write to one place and no sum depends on their number.
  *
  * How a basis (a kernel) is added: a source file mpm/kernel_<basis>.c that defines one mpm_kernel, its name in the table of mpm/kernels.c and in the words of
- * `basis` (core/scene_keys.c). A basis whose weights are products of one weight per direction needs a branch in mpm/kernel.inc, which has all passes and is
+ * `basis` (core/scene_keys_bodies.c). A basis whose weights are products of one weight per direction needs a branch in mpm/kernel.inc, which has all passes and is
  * compiled per basis. Any other writes its own passes; what they owe each other is said at mpm_kernel. Nothing outside of a kernel assumes anything of a
  * basis: not that weights are products, not where a stencil begins, not how far it reaches. */
 #ifndef AB_MPM_BODY_H

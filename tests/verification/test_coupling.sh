@@ -21,7 +21,7 @@ runs = wrong = 0
 def run(scene, *settings, cells=CELLS):
     global runs
     runs += 1
-    command = [abut, "run", f"tests/verification/{scene}.yaml", "--quiet", "-j", "1", "-o", f"{scratch}/{runs}", "--set", f"constants.cells={cells}"]
+    command = [abut, "run", f"tests/verification/{scene}.yaml", "--quiet", "-j", "1", "-o", f"{scratch}/{runs}", "--set", f"constants.cells={cells}", "--set", "time.cfl=0.9"]
     for setting in settings:
         command += ["--set", setting]
     done = subprocess.run(command, capture_output=True, text=True)
