@@ -4,7 +4,7 @@
  * Points are kept in the order of the cells they stand in (counting sort by tile and cell, anew only when a point has changed its cell), so that a node finds
  * those that reach it in the four cells around it. Each tile scatters into a patch of its own, one node larger than the tile; then each tile adds up its nodes from
  * its own patch and those to the left and below, in one fixed order: no sum depends on the number of threads. */
-#include "fem/trace.h"
+#include "fem/trace_inside.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,45 +19,6 @@ enum {
     PARALLEL_FROM = 8000, /* points; fewer are done before threads have woken up */
     FARTHEST = 1 << 29    /* cells from the grid's corner */
 };
-
-typedef struct tile {
-    int32_t around[9]; /* tiles around it by (dy+1)*3 + dx+1; -1: none */
-} tile;
-
-struct fem_trace {
-    bool axisymmetric; /* masses are those of rings; the grid begins at the axis */
-    const char *body;
-    double h, inverse_h, modulus;
-    int width; /* nodes of a point per direction: 2 hats; 3, 4 quadratic and cubic splines */
-    bool saw_inmost;
-    /* tiles, ascending */
-    size_t tile_count, tile_capacity, key_capacity;
-    uint64_t *key, *wanted; /* wanted: for a new list */
-    size_t wanted_count;
-    tile *tiles;
-    double *mass;         /* AB_TILE_NODES per tile */
-    double *patch;        /* PATCH_NODES per tile */
-    uint32_t *cell_start; /* AB_TILE_NODES*tile_count + 1: places in `order` of the points of each cell */
-    uint64_t version;
-    /* points */
-    size_t point_count, point_capacity;
-    uint64_t *cell; /* ab_tile_key of the cell's lower left node */
-    uint32_t *slot; /* tile*AB_TILE_NODES + cell in it */
-    uint32_t *order;
-    /* what a finder was last shown */
-    size_t capacity, near_capacity, stencil_capacity, place_capacity, density_capacity;
-    double *position, *node_mass, *mass_gradient, *area_vector, *stencil_weight, *near_position, *near_extent, *density_gradient;
-    size_t *near_start, *stencil_start, *place; /* place: by dof, where it stands in the stencil of the node at hand */
-    uint32_t *stencil_dof;
-    uint64_t *node_key;
-};
-
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer;
-    void *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
 
 /* Points are seen by as many nodes as those of the bodies of material points they may touch: a node that such a body has and this one has not is not shared, and
  * its part of the contact force would be missing in the other body. */
@@ -158,7 +119,7 @@ static bool want(fem_trace *t, uint64_t key, uint64_t *last) {
     *last = key;
     if (t->wanted_count == t->key_capacity) {
         const size_t more = 2 * t->key_capacity + 256;
-        if (!grow(&t->wanted, more, sizeof *t->wanted)) return false;
+        if (!fem_trace_grow(&t->wanted, more, sizeof *t->wanted)) return false;
         t->key_capacity = more;
     }
     t->wanted[t->wanted_count++] = key;
@@ -191,9 +152,10 @@ static bool list_tiles(fem_trace *t) {
         if (unique == 0 || t->wanted[k] != t->wanted[unique - 1]) t->wanted[unique++] = t->wanted[k];
     if (unique > t->tile_capacity || !t->cell_start) {
         const size_t n = unique + unique / 2 + 16;
-        if (!grow(&t->key, n, sizeof *t->key) || !grow(&t->tiles, n, sizeof *t->tiles) ||
-            !grow(&t->mass, n * AB_TILE_NODES, sizeof *t->mass) || !grow(&t->patch, n * PATCH_NODES, sizeof *t->patch) ||
-            !grow(&t->cell_start, n * AB_TILE_NODES + 1, sizeof *t->cell_start))
+        if (!fem_trace_grow(&t->key, n, sizeof *t->key) || !fem_trace_grow(&t->tiles, n, sizeof *t->tiles) ||
+            !fem_trace_grow(&t->mass, n * AB_TILE_NODES, sizeof *t->mass) ||
+            !fem_trace_grow(&t->patch, n * PATCH_NODES, sizeof *t->patch) ||
+            !fem_trace_grow(&t->cell_start, n * AB_TILE_NODES + 1, sizeof *t->cell_start))
             return false;
         t->tile_capacity = n;
     }
@@ -241,9 +203,7 @@ static void sort_points(fem_trace *t) {
     start[0] = 0;
 }
 
-/* The points that can reach a node stand in the four cells around it (sixteen, where the functions are wider): places in `order`; cells from left to right, then
- * upwards. Their number. */
-static int cells_around(const fem_trace *t, uint32_t node, uint32_t first[16], uint32_t last[16]) {
+int fem_trace_cells_around(const fem_trace *t, uint32_t node, uint32_t first[16], uint32_t last[16]) {
     const uint32_t home = node / AB_TILE_NODES;
     const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE, side = t->width > 2 ? 4 : 2;
     for (int c = 0; c < side * side; ++c) {
@@ -305,20 +265,6 @@ static void assemble(fem_trace *t, size_t k) {
     if (corner) mass[0] += corner[AB_TILE * PATCH + AB_TILE];
 }
 
-/* Value and slope at u cells from a node of the function of this width. */
-static void weigh(const fem_trace *t, double u, double *n, double *slope) {
-    const double a = fabs(u), sign = u < 0.0 ? -1.0 : 1.0;
-    if (t->width == 3) {
-        const double rest = ab_larger(1.5 - a, 0.0);
-        *n = a < 0.5 ? 0.75 - a * a : 0.5 * rest * rest;
-        *slope = a < 0.5 ? -2.0 * u : -sign * rest;
-    } else {
-        const double rest = ab_larger(2.0 - a, 0.0);
-        *n = a < 1.0 ? 2.0 / 3.0 - a * a * (1.0 - 0.5 * a) : rest * rest * rest / 6.0;
-        *slope = sign * (a < 1.0 ? a * (1.5 * a - 2.0) : -0.5 * rest * rest);
-    }
-}
-
 /* Masses of a tile's nodes from the points around each. */
 static void gather(fem_trace *t, const fem_inner *inner, size_t k) {
     const double *x = inner->position, *y = x + inner->ld;
@@ -326,13 +272,13 @@ static void gather(fem_trace *t, const fem_inner *inner, size_t k) {
         const double at[2] = {ab_tile_x(t->key[k]) * AB_TILE + (int)n % AB_TILE, ab_tile_y(t->key[k]) * AB_TILE + (int)n / AB_TILE};
         uint32_t first[16], last[16];
         double mass = 0.0;
-        const int cells = cells_around(t, (uint32_t)k * AB_TILE_NODES + n, first, last);
+        const int cells = fem_trace_cells_around(t, (uint32_t)k * AB_TILE_NODES + n, first, last);
         for (int c = 0; c < cells; ++c)
             for (uint32_t s = first[c]; s < last[c]; ++s) {
                 const uint32_t q = t->order[s];
                 double nx, ny, slope;
-                weigh(t, x[q] * t->inverse_h - at[0], &nx, &slope);
-                weigh(t, y[q] * t->inverse_h - at[1], &ny, &slope);
+                fem_trace_weigh(t, x[q] * t->inverse_h - at[0], &nx, &slope);
+                fem_trace_weigh(t, y[q] * t->inverse_h - at[1], &ny, &slope);
                 mass += nx * ny * inner->mass[q];
             }
         t->mass[k * AB_TILE_NODES + n] = mass;
@@ -346,7 +292,8 @@ ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *repo
     if (moved) {
         if (count > t->point_capacity || !t->cell) {
             const size_t n = count + 16;
-            if (!grow(&t->cell, n, sizeof *t->cell) || !grow(&t->slot, n, sizeof *t->slot) || !grow(&t->order, n, sizeof *t->order))
+            if (!fem_trace_grow(&t->cell, n, sizeof *t->cell) || !fem_trace_grow(&t->slot, n, sizeof *t->slot) ||
+                !fem_trace_grow(&t->order, n, sizeof *t->order))
                 goto no_memory;
             t->point_capacity = n;
         }
@@ -382,183 +329,3 @@ void fem_trace_tiles(const fem_trace *t, ab_node_tiles *tiles) {
 
 bool fem_trace_saw_inmost(const fem_trace *t) { return t->saw_inmost; }
 void fem_trace_note_inmost(fem_trace *t, bool saw) { t->saw_inmost = saw; }
-
-/* ---- nodes ---------------------------------------------------------------------------------------------------------------- */
-
-/* Slope of the density at a node (core/density.h), from the points in the sixteen cells that reach it: 2 numbers. Of a body whose points are a layer along its outline it is
- * right where the layer is two cells deep below the node. */
-static void density_gradient(const fem_trace *t, const fem_inner *inner, uint32_t node, const double at[2], double slope[2]) {
-    const uint32_t home = node / AB_TILE_NODES;
-    const int i = (int)(node % AB_TILE), j = (int)(node % AB_TILE_NODES) / AB_TILE;
-    const double *x = inner->position, *y = x + inner->ld;
-    slope[0] = slope[1] = 0.0;
-    for (int c = 0; c < 16; ++c) {
-        const int ci = i - 2 + c % 4, cj = j - 2 + c / 4, dx = ci < 0 ? -1 : ci / AB_TILE, dy = cj < 0 ? -1 : cj / AB_TILE;
-        const int32_t k = dx || dy ? t->tiles[home].around[(dy + 1) * 3 + dx + 1] : (int32_t)home;
-        if (k < 0) continue;
-        const uint32_t *start = t->cell_start + (size_t)k * AB_TILE_NODES + (cj - dy * AB_TILE) * AB_TILE + ci - dx * AB_TILE;
-        for (uint32_t s = start[0]; s < start[1]; ++s) {
-            const uint32_t q = t->order[s];
-            double difference[2], mean[2];
-            ab_density_pair((x[q] - at[0]) * t->inverse_h, &difference[0], &mean[0]);
-            ab_density_pair((y[q] - at[1]) * t->inverse_h, &difference[1], &mean[1]);
-            const double mass = t->axisymmetric ? inner->mass[q] / ab_circumference(x[q]) : inner->mass[q];
-            slope[0] += mass * difference[0] * mean[1];
-            slope[1] += mass * mean[0] * difference[1];
-        }
-    }
-    for (int d = 0; d < 2; ++d) slope[d] *= t->inverse_h * t->inverse_h * t->inverse_h;
-    if (t->axisymmetric && !(at[0] > 0.0)) slope[0] = 0.0;
-}
-
-static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t needs) {
-    if (count + 1 > t->capacity) {
-        const size_t n = (2 * count + 64) & ~(size_t)7;
-        if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->node_mass, n, sizeof(double)) ||
-            !grow(&t->mass_gradient, 2 * n, sizeof(double)) || !grow(&t->area_vector, 2 * n, sizeof(double)) ||
-            !grow(&t->near_start, n, sizeof(size_t)) || !grow(&t->stencil_start, n, sizeof(size_t)) ||
-            !grow(&t->node_key, n, sizeof(uint64_t)))
-            return false;
-        t->capacity = n;
-    }
-    if ((needs & AB_NEED_DENSITY_GRADIENT) && t->capacity > t->density_capacity) {
-        if (!grow(&t->density_gradient, 2 * t->capacity, sizeof(double))) return false;
-        t->density_capacity = t->capacity;
-    }
-    if (!(needs & AB_NEED_NEAR_POINTS)) return true;
-    size_t near = 0;
-    for (size_t k = 0; k < count; ++k) {
-        uint32_t first[16], last[16];
-        const int cells = cells_around(t, nodes[k], first, last);
-        for (int c = 0; c < cells; ++c) near += last[c] - first[c];
-    }
-    if (near > t->near_capacity) {
-        const size_t n = (2 * near + 64) & ~(size_t)7;
-        if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) return false;
-        t->near_capacity = n;
-    }
-    return true;
-}
-
-/* Adds `share` to the weight of a dof in the stencil that begins at `begin` and ends at *end. */
-static bool add_weight(fem_trace *t, size_t begin, size_t *end, uint32_t dof, double share) {
-    if (dof >= t->place_capacity) {
-        const size_t n = 2 * (size_t)dof + 64;
-        if (!grow(&t->place, n, sizeof *t->place)) return false;
-        memset(t->place + t->place_capacity, 0, (n - t->place_capacity) * sizeof *t->place);
-        t->place_capacity = n;
-    }
-    const size_t at = t->place[dof];
-    if (at >= begin && at < *end && t->stencil_dof[at] == dof) {
-        t->stencil_weight[at] += share;
-        return true;
-    }
-    if (*end == t->stencil_capacity) {
-        const size_t n = 2 * t->stencil_capacity + 256;
-        if (!grow(&t->stencil_dof, n, sizeof *t->stencil_dof) || !grow(&t->stencil_weight, n, sizeof *t->stencil_weight)) return false;
-        t->stencil_capacity = n;
-    }
-    t->place[dof] = *end;
-    t->stencil_dof[*end] = dof;
-    t->stencil_weight[(*end)++] = share;
-    return true;
-}
-
-/* Sums over the points around node k of the list. *stencil, *near: ends of both lists so far. */
-static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, size_t k, uint32_t needs, size_t *stencil, size_t *near) {
-    const size_t ld = t->capacity, begin = *stencil;
-    const double *x = inner->position, *y = x + inner->ld;
-    const double at[2] = {t->position[k], t->position[ld + k]};
-    double gradient[2] = {0.0}, area[2] = {0.0}, mass = 0.0;
-    uint32_t first[16], last[16];
-    const int cells = cells_around(t, node, first, last);
-    const bool wide = t->width > 2;
-    for (int c = 0; c < cells; ++c) {
-        const double slope[2] = {c % 2 ? -t->inverse_h : t->inverse_h, c / 2 ? -t->inverse_h : t->inverse_h};
-        for (uint32_t s = first[c]; s < last[c]; ++s) {
-            const uint32_t q = t->order[s];
-            double nx, ny, sx = slope[0], sy = slope[1];
-            if (wide) {
-                weigh(t, (x[q] - at[0]) * t->inverse_h, &nx, &sx), sx *= t->inverse_h;
-                weigh(t, (y[q] - at[1]) * t->inverse_h, &ny, &sy), sy *= t->inverse_h;
-            } else {
-                nx = ab_larger(1.0 - fabs(x[q] - at[0]) * t->inverse_h, 0.0);
-                ny = ab_larger(1.0 - fabs(y[q] - at[1]) * t->inverse_h, 0.0);
-            }
-            const double m = inner->mass[q], v = inner->volume[q], gx = sx * ny, gy = sy * nx, value = nx * ny;
-            const double plane = t->axisymmetric ? m / ab_circumference(x[q]) : m; /* normals are those of the plane that is drawn */
-            gradient[0] += plane * gx;
-            gradient[1] += plane * gy;
-            area[0] += v * gx;
-            area[1] += v * gy;
-            if (!(value > 0.0)) continue;
-            mass += value * m;
-            if (inner->inmost && inner->inmost[q]) t->saw_inmost = true;
-            for (size_t e = inner->start[q]; e < inner->start[q + 1]; ++e)
-                if (!add_weight(t, begin, stencil, inner->dof[e], value * m * inner->weight[e])) return false;
-            if (!(needs & AB_NEED_NEAR_POINTS)) continue;
-            t->near_position[*near] = x[q];
-            t->near_position[t->near_capacity + *near] = y[q];
-            for (size_t r = 0; r < 3; ++r) t->near_extent[r * t->near_capacity + *near] = inner->extent[r * inner->ld + q];
-            ++*near;
-        }
-    }
-    for (size_t e = begin; e < *stencil; ++e) t->stencil_weight[e] /= mass;
-    if (t->axisymmetric && !(at[0] > 0.0)) gradient[0] = area[0] = 0.0; /* the other side of the axis is alike */
-    for (size_t d = 0; d < 2; ++d) {
-        t->mass_gradient[d * ld + k] = gradient[d];
-        t->area_vector[d * ld + k] = area[d];
-    }
-    return true;
-}
-
-ab_status fem_trace_nodes(fem_trace *t, const fem_inner *inner, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace,
-                          ab_report *report) {
-    if (!reserve(t, nodes, count, needs)) goto no_memory;
-    const size_t ld = t->capacity;
-    size_t stencil = 0, near = 0;
-    for (size_t k = 0; k < count; ++k) {
-        const uint64_t tile_key = t->key[nodes[k] / AB_TILE_NODES];
-        const int32_t n = (int32_t)(nodes[k] % AB_TILE_NODES), i = ab_tile_x(tile_key) * AB_TILE + n % AB_TILE,
-                      j = ab_tile_y(tile_key) * AB_TILE + n / AB_TILE;
-        t->position[k] = t->h * i;
-        t->position[ld + k] = t->h * j;
-        t->node_mass[k] = t->mass[nodes[k]];
-        t->node_key[k] = ab_tile_key(i, j);
-        t->stencil_start[k] = stencil;
-        t->near_start[k] = near;
-        if (!look_around(t, inner, nodes[k], k, needs, &stencil, &near)) goto no_memory;
-        if (needs & AB_NEED_DENSITY_GRADIENT) {
-            double slope[2];
-            density_gradient(t, inner, nodes[k], (const double[2]){t->position[k], t->position[ld + k]}, slope);
-            for (size_t d = 0; d < 2; ++d) t->density_gradient[d * ld + k] = slope[d];
-        }
-    }
-    t->stencil_start[count] = stencil;
-    t->near_start[count] = near;
-    *trace = (ab_trace){
-        .struct_size = sizeof *trace,
-        .dimension = 2,
-        .body = t->body,
-        .stiffness = t->modulus,
-        .cell = t->h,
-        .count = count,
-        .ld = ld,
-        .position = t->position,
-        .stencil_start = t->stencil_start,
-        .stencil_dof = t->stencil_dof,
-        .stencil_weight = t->stencil_weight,
-        .key = t->node_key,
-        .mass = t->node_mass,
-        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL,
-        .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
-        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL,
-        .near_ld = t->near_capacity,
-        .near_position = t->near_position,
-        .near_extent = t->near_extent,
-        .density_gradient = (needs & AB_NEED_DENSITY_GRADIENT) ? t->density_gradient : NULL,
-    };
-    return AB_OK;
-no_memory:
-    return ab_report_failure(report, "body '%s': no memory for %zu nodes in contact", t->body, count);
-}
