@@ -383,13 +383,6 @@ ab_status fem_create(const ab_scene *scene, size_t index, int threads, ab_domain
     body->domain = (ab_domain){.ops = &OPS, .spec = spec, .dimension = 2, .index = index};
     body->scene = scene;
     body->element = scene->space == AB_SPACE_AXISYMMETRIC ? fem_element_axisymmetric_of(spec->mesh.type) : fem_element_of(spec->mesh.type);
-    if (!body->element) {
-        free(body);
-        return ab_report_error(
-            report, spec->mesh.mark,
-            "bodies.%s.mesh.type: %s is not there yet in axisymmetric scenes; use q4, with f_bar: true where it locks, q8 or q8r",
-            spec->name, fem_element_of(spec->mesh.type)->name);
-    }
     body->f_bar = spec->mesh.f_bar;
     body->hourglass = spec->mesh.hourglass;
     body->gravity = spec->gravity;

@@ -40,7 +40,7 @@ typedef struct fem_element {
 } fem_element;
 
 const fem_element *fem_element_of(ab_element_type);
-const fem_element *fem_element_axisymmetric_of(ab_element_type); /* NULL: not there yet */
+const fem_element *fem_element_axisymmetric_of(ab_element_type);
 
 /* Largest eigenfrequency squared, 1/s2, of each of eight free elements with lumped masses: bounds that of the whole mesh (Irons). Power iteration to 1e-3, never
  * below the true value by more. */

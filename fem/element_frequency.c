@@ -64,6 +64,14 @@ static void push(fem_jacobian j, lanes r, lanes xi, lanes eta, lanes g[2]) {
     g[1] = (j.xx * eta - j.xy * xi) * r;
 }
 
+/* Where the modes of q6 are measured from in a ring: fem/element_q6.c. */
+static void middle_of_ring(const double (*x)[8], int first, lanes middle[2]) {
+    const fem_bilinear f = fem_bilinear_of(x, NULL, first);
+    const lanes third = 1.0 / (3.0 * fem_radius_centre(x, first));
+    middle[0] = f.a[0] * third;
+    middle[1] = f.b[0] * third;
+}
+
 /* Length of the circle at a place, m, and N/r of the nodes there. */
 static lanes circumference(int nodes, const double (*x)[8], const double place[2], int first, lanes *hoop) {
     double n[FEM_NODES];
@@ -77,8 +85,10 @@ static lanes circumference(int nodes, const double (*x)[8], const double place[2
 static inline __attribute__((always_inline)) void stiffness_of(const fem_element *element, const double (*x)[8], const fem_elastic *elastic,
                                                                bool f_bar, double hourglass, int first, squares *s, const bool rings) {
     const int nodes = element->nodes;
-    const bool q4 = element->strain == fem_q4_strain || element->strain == fem_q4_strain_rings, q4r = element->strain == fem_q4r_strain,
-               q6 = element->strain == fem_q6_strain;
+    const bool q4 = element->strain == (rings ? fem_q4_strain_rings : fem_q4_strain),
+               q4r = element->strain == (rings ? fem_q4r_strain_rings : fem_q4r_strain),
+               q6 = element->strain == (rings ? fem_q6_strain_rings : fem_q6_strain),
+               whole = rings && q4r; /* whole: by the mean strain over 2 x 2 points */
     f_bar = f_bar && q4;
     double dn0[FEM_NODES][2];
     fem_shape_derivatives(nodes, 0, 0, dn0);
@@ -86,20 +96,24 @@ static inline __attribute__((always_inline)) void stiffness_of(const fem_element
     const lanes det0 = fem_det(j0), r0 = 1.0 / det0;
     s->count = 0;
     s->columns = 2 * nodes + (q6 ? 4 : 0);
-    lanes mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2], hoop[FEM_NODES];
-    for (int q = 0; q < element->gauss; q++) {
+    lanes mean[FREE] = {{0}}, area = {0}, g[FEM_NODES + 2][2], hoop[FEM_NODES + 2] = {{0}}, mean_hoop[4] = {{0}}, middle[2] = {{0}};
+    if (rings && q6) middle_of_ring(x, first, middle);
+    const fem_element *points = whole ? fem_element_axisymmetric_of(AB_ELEMENT_Q4) : element;
+    for (int q = 0; q < points->gauss; q++) {
         double place[2], weight, dn[FEM_NODES][2];
-        fem_gauss(element, q, place, &weight);
+        fem_gauss(points, q, place, &weight);
         fem_shape_derivatives(nodes, place[0], place[1], dn);
         const fem_jacobian j = jacobian(nodes, x, dn, first);
         const lanes det = fem_det(j), r = 1.0 / det;
         const lanes volume = rings ? weight * det * circumference(nodes, x, place, first, hoop) : weight * det;
         for (int a = 0; a < nodes; a++) push(j, r, lanes_set(dn[a][0]), lanes_set(dn[a][1]), g[a]);
         if (q6) {
-            push(j0, r, lanes_set(-2 * place[0]), lanes_set(0), g[4]);
-            push(j0, r, lanes_set(0), lanes_set(-2 * place[1]), g[5]);
+            push(j0, r, -2 * (place[0] - middle[0]), lanes_set(0), g[4]);
+            push(j0, r, lanes_set(0), -2 * (place[1] - middle[1]), g[5]);
         }
-        if (rings) {
+        if (whole)
+            for (int a = 0; a < 4; a++) mean_hoop[a] += volume * hoop[a];
+        else if (rings) {
             add_ring(s, volume, elastic, g, hoop, !f_bar);
             for (int a = 0; a < nodes; a++) mean[2 * a] += volume * hoop[a];
         } else
@@ -113,11 +127,22 @@ static inline __attribute__((always_inline)) void stiffness_of(const fem_element
         for (int k = 0; k < s->columns; k++) s->row[s->count][k] = bulk * mean[k];
         s->count++;
     }
+    if (whole) {
+        const lanes inverse = 1.0 / area;
+        for (int a = 0; a < 4; a++) {
+            for (int c = 0; c < 2; c++) g[a][c] = inverse * mean[2 * a + c];
+            hoop[a] = inverse * mean_hoop[a];
+        }
+        add_ring(s, area, elastic, (const lanes(*)[2])g, hoop, true);
+        for (int a = 0; a < 4; a++)
+            push(j0, r0, lanes_set(dn0[a][0]), lanes_set(dn0[a][1]), g[a]); /* at the centre, for the stabilisation */
+    }
     if (q4r && hourglass > 0) {
         const fem_bilinear f = fem_bilinear_of(x, NULL, first);
         const fem_hourglass w = fem_hourglass_of(j0, r0, elastic, hourglass);
-        const lanes slope = w.n * w.hxy / w.hxx, one = lanes_root(w.modulus * w.hxx),
-                    two = lanes_root(w.modulus * (w.hyy - w.n * w.hxy * slope));
+        const lanes slope = w.n * w.hxy / w.hxx,
+                    modulus = whole ? w.modulus * fem_circumference(fem_radius_centre(x, first)) : lanes_set(w.modulus),
+                    one = lanes_root(modulus * w.hxx), two = lanes_root(modulus * (w.hyy - w.n * w.hxy * slope));
         for (int a = 0; a < 4; a++) {
             const lanes gamma = (a % 2 ? -0.25 : 0.25) - f.h[0] * g[a][0] - f.h[1] * g[a][1]; /* g: of the only point, the centre */
             for (int c = 0; c < 2; c++) {

@@ -141,6 +141,13 @@ static inline fem_hourglass fem_hourglass_of(fem_jacobian j, lanes r, const fem_
 
 /* Length of the circle at a radius, m. */
 static inline lanes fem_circumference(lanes radius) { return 6.283185307179586 * radius; }
+/* r of four nodes: the mean of the corners, and at a place of the reference square. */
+static inline lanes fem_radius_centre(const double (*x)[8], int first) {
+    return 0.25 * (lanes_load(x[0] + first) + lanes_load(x[2] + first) + lanes_load(x[4] + first) + lanes_load(x[6] + first));
+}
+static inline lanes fem_radius_at(lanes centre, const fem_bilinear *f, const double place[2]) {
+    return centre + place[0] * f->a[0] + place[1] * f->b[0] + place[0] * place[1] * f->h[0];
+}
 
 void fem_q4_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q4_force(fem_block *, bool f_bar);
@@ -148,8 +155,12 @@ void fem_q4_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double ho
 void fem_q4_force_rings(fem_block *, bool f_bar);
 void fem_q4r_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q4r_force(fem_block *, bool f_bar);
+void fem_q4r_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
+void fem_q4r_force_rings(fem_block *, bool f_bar);
 void fem_q6_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q6_force(fem_block *, bool f_bar);
+void fem_q6_strain_rings(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
+void fem_q6_force_rings(fem_block *, bool f_bar);
 void fem_q8_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);
 void fem_q8_force(fem_block *, bool f_bar);
 void fem_q8r_strain(fem_block *, const fem_elastic *, bool f_bar, double hourglass);

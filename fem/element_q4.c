@@ -50,16 +50,6 @@ static void average_dilatation(fem_block *block, int first) {
     }
 }
 
-#if RINGS
-/* r at a Gauss point, from the mean of the corners. */
-static inline lanes radius_at(lanes centre, const fem_bilinear *f, int q) {
-    return centre + PLACE[q][0] * f->a[0] + PLACE[q][1] * f->b[0] + PLACE[q][0] * PLACE[q][1] * f->h[0];
-}
-static inline lanes radius_centre(const double (*x)[8], int first) {
-    return 0.25 * (lanes_load(x[0] + first) + lanes_load(x[2] + first) + lanes_load(x[4] + first) + lanes_load(x[6] + first));
-}
-#endif
-
 static inline void strain(fem_block *block, bool f_bar, int first) {
     const fem_bilinear x = fem_bilinear_of(block->start, NULL, first), u = fem_bilinear_of(block->end, block->start, first),
                        y = fem_bilinear_sum(&x, &u, 1);
@@ -73,7 +63,8 @@ static inline void strain(fem_block *block, bool f_bar, int first) {
         lanes_store(block->h[q][2] + first, h.yx);
         lanes_store(block->h[q][3] + first, h.yy);
 #if RINGS
-        const lanes r0 = radius_at(radius_centre(block->start, first), &x, q), r1 = radius_at(radius_centre(block->end, first), &y, q);
+        const lanes r0 = fem_radius_at(fem_radius_centre(block->start, first), &x, PLACE[q]),
+                    r1 = fem_radius_at(fem_radius_centre(block->end, first), &y, PLACE[q]);
         lanes_store(block->hoop[q] + first, (r1 - r0) / r0);
         lanes_store(block->volume0[q] + first, fem_circumference(r0) * det);
         lanes_store(block->volume[q] + first, fem_circumference(r1) * end);
@@ -96,14 +87,14 @@ static inline void force(fem_block *block, bool f_bar, int first) {
     fem_bilinear sum = {.a = {{0}}};
     lanes mean = {0};
 #if RINGS
-    const lanes centre = radius_centre(block->end, first);
+    const lanes centre = fem_radius_centre(block->end, first);
     lanes all = {0};
 #endif
     if (f_bar) {
         lanes volume = {0}, pressure = {0};
         for (int q = 0; q < 4; q++) {
 #if RINGS
-            const lanes v = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1])) * fem_circumference(radius_at(centre, &y, q));
+            const lanes v = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1])) * fem_circumference(fem_radius_at(centre, &y, PLACE[q]));
             pressure += v * lanes_load(block->stress[q][2] + first);
 #else
             const lanes v = fem_det(fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]));
@@ -126,7 +117,7 @@ static inline void force(fem_block *block, bool f_bar, int first) {
             xx += shift, yy += shift, zz += shift;
         }
         const fem_jacobian j = fem_bilinear_at(&y, PLACE[q][0], PLACE[q][1]);
-        const lanes round = fem_circumference(radius_at(centre, &y, q)), hoop = fem_circumference(fem_det(j) * zz);
+        const lanes round = fem_circumference(fem_radius_at(centre, &y, PLACE[q])), hoop = fem_circumference(fem_det(j) * zz);
         xx *= round, yy *= round, xy *= round;
         all += hoop;
         sum.a[0] += PLACE[q][0] * hoop;
