@@ -40,10 +40,6 @@ static void check_body(ab_scene_reader *r, const ab_body_spec *body) {
     if (body->surface_points > 0.0)
         ab_report_error(r->base.report, body->mark,
                         "bodies.%s.surface: points on the outline are not there yet in axisymmetric scenes; leave the key out", body->name);
-    if (body->basis != NULL && strcmp(body->basis, "cpdi") == 0)
-        ab_report_error(r->base.report, body->mark,
-                        "bodies.%s.basis: cpdi is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",
-                        body->name);
 }
 
 static bool is_points(const ab_body_spec *body) { return body->method != NULL && strcmp(body->method, "material-points") == 0; }

@@ -360,12 +360,6 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     mpm_body *body = calloc(1, sizeof *body);
     if (!body) return ab_report_failure(report, "no memory for body '%s'", spec->name);
     body->kernel = mpm_kernel_of(spec->basis, scene->space);
-    if (!body->kernel) {
-        free(body);
-        return ab_report_error(report, spec->mark,
-                               "bodies.%s.basis: %s is not there yet in axisymmetric scenes; use gimp, linear, bspline2 or bspline3",
-                               spec->name, spec->basis);
-    }
     body->axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
     static const char *const UPDATES[] = {[MPM_USF] = "usf", [MPM_USL] = "usl", [MPM_MUSL] = "musl", [MPM_USAVG] = "usavg"};
     static const ab_domain_ops *const OPS[] = {

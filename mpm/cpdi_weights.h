@@ -5,8 +5,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "mpm/axisymmetric.h"
 #include "mpm/volumetric.h"
 
+#ifndef AXISYMMETRIC /* 1 for the instance in which x is a radius and points are rings: mpm/axisymmetric.h */
+#define AXISYMMETRIC 0
+#endif
+enum { STRAINS = AXISYMMETRIC ? 5 : 4 }; /* rows of a displacement gradient */
 enum { NODES = 4, STENCIL = NODES * NODES, PATCH = MPM_PATCH_WIDE, PATCH_NODES = PATCH * PATCH, PATCH_DOUBLES = 8 * PATCH_NODES };
 #define ROUNDING 1e-9 /* cells: by so much the place of a point in its tile may differ from that in the grid */
 #define INLINE static inline __attribute__((always_inline))
@@ -15,15 +20,26 @@ enum { NODES = 4, STENCIL = NODES * NODES, PATCH = MPM_PATCH_WIDE, PATCH_NODES =
 typedef struct frame { /* what the weights of a tile's points hang on */
     v8 corner[2], inverse_h, h;
     size_t corners, stride;
+#if AXISYMMETRIC
+    v8 axis; /* m, from the grid's corner */
+#endif
 } frame;
 
 INLINE frame frame_of(const mpm_body *body, const mpm_tile *tile) {
-    return (frame){{v8_set(tile->tx * (AB_TILE * body->h)), v8_set(tile->ty * (AB_TILE * body->h))},
-                   v8_set(body->inverse_h),
-                   v8_set(body->h),
-                   8 * (size_t)body->rows.corners,
-                   8 * (size_t)body->rows.count};
+    return (frame) {
+        {v8_set(tile->tx * (AB_TILE * body->h)), v8_set(tile->ty * (AB_TILE * body->h))}, v8_set(body->inverse_h), v8_set(body->h),
+            8 * (size_t)body->rows.corners, 8 * (size_t)body->rows.count
+#if AXISYMMETRIC
+            ,
+            v8_set(-body->origin[0])
+#endif
+    };
 }
+
+#if AXISYMMETRIC
+/* 1/m of a block's points. */
+INLINE v8 inverse_radius_of(const frame *f, const double *block) { return mpm_inverse_radius(v8_load(block + 8 * ROW_X) - f->axis); }
+#endif
 
 /* Half diagonals of the domains, cells, drawn back to a cell at most: from the point to the corners at +a+b and +a-b. */
 INLINE void diagonals(const frame *f, const double *block, v8 d[2][2]) {
@@ -62,6 +78,16 @@ INLINE void base_of(const frame *f, const double *block, v8 base[2], int32_t nod
     V8_IN_MEMORY(node);
 }
 
+#if AXISYMMETRIC
+/* The mean of dN/dx over a domain, weighted by r: with N = n + xi p + eta q + xi eta t on it and r = r_p + xi a_r + eta b_r, what N gains along a and b is p + t b_r/(3 r_p) and
+ * q + t a_r/(3 r_p), or along the diagonals d0_r and -d1_r times t/(3 r_p) more. So the force of a uniform stress is the integral of r N over the outline of the domain,
+ * which cancels from neighbour to neighbour. lean: d_r/(6 r_p), d_r cut where a domain reaches beyond the axis. */
+INLINE void lean_of(const frame *f, const double *block, const v8 d[2][2], v8 lean[2]) {
+    const v8 one = v8_set(1.0), inverse = f->h * inverse_radius_of(f, block);
+    for (int k = 0; k < 2; ++k) lean[k] = v8_set(1.0 / 6.0) * v8_max(v8_min(d[k][0] * inverse, one), -one);
+}
+#endif
+
 /* The table of a block; gradients with `slopes` only. */
 INLINE void weigh(const frame *f, const double *block, const bool slopes, mpm_stencils *w) {
     v8 d[2][2], base[2], n[4][2][NODES];
@@ -78,12 +104,20 @@ INLINE void weigh(const frame *f, const double *block, const bool slopes, mpm_st
     /* with p = N(+d0) - N(-d0) and q = N(+d1) - N(-d1): d0.G = p/2 and d1.G = q/2, so G = (p (d1y, -d1x) - q (d0y, -d0x))/(2 (d0x d1y - d0y d1x)) */
     const v8 turn = v8_set(0.5) * f->inverse_h / (d[0][0] * d[1][1] - d[0][1] * d[1][0]), quarter = v8_set(0.25);
     const v8 px = d[1][1] * turn, py = -d[1][0] * turn, qx = -d[0][1] * turn, qy = d[0][0] * turn;
+#if AXISYMMETRIC
+    v8 lean[2];
+    lean_of(f, block, d, lean);
+#endif
     UNROLL for (int k = 0; k < STENCIL; ++k) {
         const int i = k % NODES, j = k / NODES;
         const v8 n0 = n[0][0][i] * n[0][1][j], n1 = n[1][0][i] * n[1][1][j], n2 = n[2][0][i] * n[2][1][j], n3 = n[3][0][i] * n[3][1][j];
         v8_store(w->value[k], quarter * ((n0 + n1) + (n2 + n3)));
         if (!slopes) continue;
+#if AXISYMMETRIC /* weighted by r: what is xi eta on the domain slopes where r is larger, too */
+        const v8 twist = (n0 + n1) - (n2 + n3), p = n0 - n1 + lean[0] * twist, q = n2 - n3 - lean[1] * twist;
+#else
         const v8 p = n0 - n1, q = n2 - n3;
+#endif
         v8_store(w->gx[k], p * px + q * qx);
         v8_store(w->gy[k], p * py + q * qy);
     }
@@ -162,7 +196,15 @@ static void carry(const mpm_body *body, const mpm_tile *tile, const double *bloc
     const double area = a[0] * b[1] - a[1] * b[0];
     const double u = fmin(fmax((away[0] * b[1] - away[1] * b[0]) / area, -1.0), 1.0),
                  v = fmin(fmax((a[0] * away[1] - a[1] * away[0]) / area, -1.0), 1.0);
-    const double share[4] = {(1 + u) * (1 + v), (1 - u) * (1 - v), (1 + u) * (1 - v), (1 - u) * (1 + v)};
+    double share[4] = {(1 + u) * (1 + v), (1 - u) * (1 - v), (1 + u) * (1 - v), (1 - u) * (1 + v)};
+#if AXISYMMETRIC /* the force on a piece is that of its middle times 2 pi r there; its outer half bears more of it: the mean of N along it, weighted by r */
+    const double radius = load->now[0] + body->origin[0],
+                 lean = load->stretch[0] / (3.0 * fmax(radius, fmax(fabs(load->stretch[0]), 1e-12)));
+    const double along[2] = {load->stretch[0] * body->inverse_h, load->stretch[1] * body->inverse_h};
+    const double du = lean * (along[0] * b[1] - along[1] * b[0]) / area, dv = lean * (a[0] * along[1] - a[1] * along[0]) / area;
+    share[0] += du * (1 + v) + dv * (1 + u), share[1] -= du * (1 - v) + dv * (1 - u);
+    share[2] += du * (1 - v) - dv * (1 + u), share[3] -= du * (1 + v) - dv * (1 - u);
+#endif
     for (int k = 0; k < STENCIL; ++k) {
         value[k] = 0.0;
         for (int q = 0; q < 4; ++q) value[k] += 0.25 * share[q] * n[q][0][k % NODES][lane] * n[q][1][k / NODES][lane];

@@ -9,7 +9,9 @@
  * drawn back along their diagonals until they are inside (corner limiting: Homel, Brannon and Guilkey 2016); a and b themselves go on unlimited. So the body stays
  * joined until points are two cells apart, and every sum above still holds.
  *
- * Weights are no products of one weight per direction, so every pass goes over a table of 16 nodes. Transfers are those of transfer.inc; D of apic is a full tensor. */
+ * Weights are no products of one weight per direction, so every pass goes over a table of 16 nodes. Transfers are those of transfer.inc; D of apic is a full tensor.
+ *
+ * Compiled once more with AXISYMMETRIC, for rings: a domain is the piece of the plane that sweeps the ring, its volume 2 pi r_p times its area, and gradients are means weighted by r. */
 #include "mpm/cpdi_weights.h"
 
 /* ---- points to nodes ----------------------------------------------------------------------------------------------------- */
@@ -29,7 +31,11 @@ INLINE void scatter_any(mpm_body *body, size_t number, const bool affine) {
         row[0] = mass;
         row[1] = mass * v8_load(block + 8 * ROW_V);
         row[2] = mass * v8_load(block + 8 * (ROW_V + 1));
+#if AXISYMMETRIC
+        row[3] = minus_volume * v8_load(block + 8 * (ROW_STRESS + 2)) * inverse_radius_of(&f, block); /* of hoops: NODE_HOOP */
+#else
         row[3] = zero;
+#endif
         row[4] = minus_volume * v8_load(block + 8 * ROW_STRESS);
         row[5] = row[6] = minus_volume * v8_load(block + 8 * (ROW_STRESS + 3));
         row[7] = minus_volume * v8_load(block + 8 * (ROW_STRESS + 1));
@@ -262,7 +268,7 @@ static void filter(mpm_body *body, size_t number) {
 /* ---- strain and stress --------------------------------------------------------------------------------------------------- */
 
 /* a and b of a block to the end of the step. */
-INLINE void convect(double *r, const double h[4][LONG], uint32_t b) {
+INLINE void convect(double *r, const double h[STRAINS][LONG], uint32_t b) {
     const size_t at = 8 * (size_t)b;
     for (int k = 0; k < 4; k += 2) {
         const v8 x = v8_load(r + 8 * k), y = v8_load(r + 8 * (k + 1));
@@ -271,9 +277,9 @@ INLINE void convect(double *r, const double h[4][LONG], uint32_t b) {
     }
 }
 
-/* Displacement gradient of the step, H = dt grad v, of `blocks` blocks: rows of LONG doubles (xx, xy, yx, yy). */
+/* Displacement gradient of the step, H = dt grad v, of `blocks` blocks: rows of LONG doubles (xx, xy, yx, yy, and of hoops). */
 INLINE void gradients(const frame *f, bool from_end, const double *velocity, double dt_, const double *block, uint32_t blocks,
-                      double h[4][LONG]) {
+                      double h[STRAINS][LONG]) {
     const v8 dt = v8_set(dt_);
     for (uint32_t b = 0; b < blocks; ++b, block += f->stride) {
         mpm_stencils w;
@@ -284,15 +290,19 @@ INLINE void gradients(const frame *f, bool from_end, const double *velocity, dou
         v8_store(h[1] + 8 * b, dt * sum[2]);
         v8_store(h[2] + 8 * b, dt * sum[1]);
         v8_store(h[3] + 8 * b, dt * sum[3]);
+#if AXISYMMETRIC
+        gather_products(velocity, 2, &w, (const double(*)[8])w.value, (const double(*)[8])w.value, sum);
+        v8_store(h[4] + 8 * b, dt * sum[0] * inverse_radius_of(f, block));
+#endif
     }
-    if (from_end) mpm_seen_from_end(h, blocks, false);
+    if (from_end) mpm_seen_from_end(h, blocks, AXISYMMETRIC);
 }
 
 /* f_bar: V d and V of a tile's points by cells onto its patch, d the change of volume in the step by the nodes' velocities. */
 static void dilate(mpm_body *body, size_t number, const ab_step *step) {
     const mpm_tile *tile = body->tiles + number;
     const frame f = frame_of(body, tile);
-    double velocity[2 * PATCH_NODES + 8] __attribute__((aligned(64))), h[4][LONG] __attribute__((aligned(64)));
+    double velocity[2 * PATCH_NODES + 8] __attribute__((aligned(64))), h[STRAINS][LONG] __attribute__((aligned(64)));
     mpm_grid_fetch_velocity(body, number, velocity);
     double *patch = mpm_cells_open(body, tile);
     for (uint32_t begin = 0; begin < tile->blocks; begin += LONG / 8) {
@@ -300,7 +310,7 @@ static void dilate(mpm_body *body, size_t number, const ab_step *step) {
         const double *block = mpm_block(body, tile->first + begin);
         gradients(&f, body->from_end, velocity, step->dt, block, blocks, h);
         for (uint32_t b = 0; b < blocks; ++b, block += f.stride)
-            mpm_cells_add(body, tile, block, mpm_dilatation((const double(*)[LONG])h, b, false), patch);
+            mpm_cells_add(body, tile, block, mpm_dilatation((const double(*)[LONG])h, b, AXISYMMETRIC), patch);
     }
 }
 
@@ -310,7 +320,7 @@ static int stress(mpm_body *body, size_t number, const ab_step *step, bool advan
     const frame f = frame_of(body, tile);
     double velocity[2 * PATCH_NODES + 8] __attribute__((aligned(64)));
     mpm_grid_fetch_velocity(body, number, velocity);
-    double h[4][LONG] __attribute__((aligned(64)));
+    double h[STRAINS][LONG] __attribute__((aligned(64)));
     double means[2 * PATCH_NODES + 8] __attribute__((aligned(64)));
     if (body->f_bar) mpm_volumetric_fetch(body, number, means);
     mpm_long_batch batch;
@@ -320,11 +330,12 @@ static int stress(mpm_body *body, size_t number, const ab_step *step, bool advan
         const uint32_t left = tile->blocks - begin, blocks = left < LONG / 8 ? left : LONG / 8;
         double *block = mpm_block(body, tile->first + begin);
         gradients(&f, body->from_end, velocity, step->dt, block, blocks, h);
-        if (body->f_bar) mpm_average_dilatation(body, tile, means, block, blocks, h, false);
-        for (uint32_t b = 0; b < blocks; ++b) mpm_batch_strain(&batch, rows, block + b * f.stride, (const double(*)[LONG])h, b, false);
+        if (body->f_bar) mpm_average_dilatation(body, tile, means, block, blocks, h, AXISYMMETRIC);
+        for (uint32_t b = 0; b < blocks; ++b)
+            mpm_batch_strain(&batch, rows, block + b * f.stride, (const double(*)[LONG])h, b, AXISYMMETRIC);
         if (mpm_batch_call(&batch, body, 8 * blocks) != 0) return (int)(tile->first + begin);
         for (uint32_t b = 0; b < blocks; ++b, block += f.stride) {
-            mpm_batch_settle(&batch, rows, block, b, &strain_work, &plastic_work, &fastest, false);
+            mpm_batch_settle(&batch, rows, block, b, &strain_work, &plastic_work, &fastest, AXISYMMETRIC);
             convect(block + 8 * rows.corners, (const double(*)[LONG])h, b);
             if (rows.extent >= 0) mpm_stretch_extent(block + 8 * rows.extent, (const double(*)[LONG])h, b);
             if (advance)
@@ -337,20 +348,25 @@ static int stress(mpm_body *body, size_t number, const ab_step *step, bool advan
     return -1;
 }
 
-extern const mpm_kernel mpm_kernel_cpdi;
-const mpm_kernel mpm_kernel_cpdi = {.basis = "cpdi",
-                                    .nodes = NODES,
-                                    .patch = PATCH,
-                                    .reach = 2.0,
-                                    .convected = true,
-                                    .moment = true,
-                                    .courant = {1.000, 0.907, 0.785, 0.688, 0.621, 0.573, 0.535, 0.496},
-                                    .first = first,
-                                    .stencils = stencils,
-                                    .spreads = spreads,
-                                    .carry = carry,
-                                    .scatter = {scatter, scatter_affine},
-                                    .finish = {finish, finish_affine, finish_extended},
-                                    .filter = filter,
-                                    .dilate = dilate,
-                                    .stress = stress};
+#if AXISYMMETRIC
+#define KERNEL mpm_kernel_cpdi_axisymmetric
+#else
+#define KERNEL mpm_kernel_cpdi
+#endif
+extern const mpm_kernel KERNEL;
+const mpm_kernel KERNEL = {.basis = "cpdi",
+                           .nodes = NODES,
+                           .patch = PATCH,
+                           .reach = 2.0,
+                           .convected = true,
+                           .moment = true,
+                           .courant = {1.000, 0.907, 0.785, 0.688, 0.621, 0.573, 0.535, 0.496},
+                           .first = first,
+                           .stencils = stencils,
+                           .spreads = spreads,
+                           .carry = carry,
+                           .scatter = {scatter, scatter_affine},
+                           .finish = {finish, finish_affine, finish_extended},
+                           .filter = filter,
+                           .dilate = dilate,
+                           .stress = stress};

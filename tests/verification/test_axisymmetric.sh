@@ -16,11 +16,13 @@ variant "tube, h = 0.2" axi_tube constants.h=0.2 "$(e 1 3e-3)" "$(e 2 0.1)" "$(e
 variant "tube, h = 0.05" axi_tube constants.h=0.05 "$(e 0 3e-4)" "$(e 1 1e-4)" "$(e 2 2.5e-2)" "$(e 3 1.1e-2)"
 variant "tube, bspline2" axi_tube bodies.tube.basis=bspline2 "$(e 0 3e-4)" "$(e 1 6e-4)" "$(e 2 5e-3)" "$(e 3 2.5e-3)"
 variant "tube, bspline3" axi_tube bodies.tube.basis=bspline3 "$(e 0 5e-4)" "$(e 1 5e-4)" "$(e 2 5e-3)" "$(e 3 2.5e-3)"
+variant "tube, cpdi" axi_tube bodies.tube.basis=cpdi "$(e 0 1e-3)" "$(e 1 1e-3)"
 variant "tube, linear" axi_tube bodies.tube.basis=linear "$(e 0 2e-2)" "$(e 1 1.2e-2)" "$(e 2 9e-2)" "$(e 3 3.5e-2)"
 variant "tube, nu = 0.4999, f_bar" axi_tube constants.nu=0.4999 bodies.tube.f_bar=patch time.cfl=0.8 "$(e 0 5e-3)" "$(e 1 5e-3)" "$(e 2 0.1)" "$(e 3 0.1)"
-for type in q8r q4; do
-    variant "tube, $type" axi_fe_tube bodies.tube.mesh.type=$type $([ $type = q4 ] && echo "$(e 0 3e-3) $(e 1 3e-3) $(e 2 6e-2) $(e 3 3e-2) $(e 6 3e-3)")
+for type in q8r q4 q4r q6; do
+    variant "tube, $type" axi_fe_tube bodies.tube.mesh.type=$type $([ $type = q8r ] || echo "$(e 0 3e-3) $(e 1 3e-3) $(e 2 6e-2) $(e 3 3.3e-2) $(e 6 3e-3)")
 done
+for type in q4r q6; do variant "tube, $type, nu = 0.4999" axi_fe_tube bodies.tube.mesh.type=$type constants.nu=0.4999 "$(e 0 4e-3)" "$(e 1 4e-3)" "$(e 2 4e-2)" "$(e 3 4e-2)" "$(e 6 4e-3)"; done
 variant "tube, q4 f_bar, nu = 0.4999" axi_fe_tube bodies.tube.mesh.type=q4 bodies.tube.mesh.f_bar=true constants.nu=0.4999 "$(e 0 3e-3)" "$(e 1 3e-3)" "$(e 2 5e-2)" "$(e 3 5e-2)" "$(e 6 5e-3)" "$(e 7 1e-3)"
 variant "turning shaft, solid" axi_spinning constants.a=0 "$(e 0 2e-4)"
 variant "turning shaft, solid, h = 0.05" axi_spinning constants.a=0 constants.h=0.05 "$(e 0 5e-5)" "$(e 1 3e-3)" "$(e 2 2e-3)"
@@ -68,6 +70,5 @@ wrong 'grid.from=[-0.1, 0]' 'x is the radius'
 wrong 'grid.from=[0.1, 0]' 'begins at the axis'
 wrong 'grid.sides={left: fixed}' 'it is the axis'
 wrong 'contact[0].response=penalty' "does not work in axisymmetric scenes"
-wrong 'bodies.column.basis=cpdi' 'not there yet in axisymmetric scenes'
 wrong 'bodies.column.surface=points' 'not there yet in axisymmetric scenes'
 exit $((missed > 0))
