@@ -93,8 +93,10 @@ SECTION(arc, "arc", arc, NULL, "The shorter way round, less than half a circle."
 
 static const ab_key fix[] = {
     [FIX_WHERE] = {"where", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "which nodes"},
-    [FIX_VELOCITY] = {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLE_T,
-                      .help = "their velocity; null in place of a number leaves that direction free"},
+    [FIX_VELOCITY] =
+        {"velocity", AB_KEY_VECTOR, .unit = "m s-1", .flags = AB_KEY_REQUIRED, .variables = AB_VARIABLES_T_START,
+         .help = "their velocity, X, Y being the place of the node at the start (so [\"-w*Y\", \"w*X\"] begins to turn them); null "
+                 "in place of a number leaves that direction free"},
     [FIX_STAGES] = {"stages", AB_KEY_SECTION, .help = "name of a stage or list of names: it holds in these only; default: in all"},
 };
 SECTION(fix, "bodies.NAME.fix[i]", fix, NULL,

@@ -19,11 +19,12 @@ static const char *type_name(const ab_key *key) {
                : key->variables == AB_VARIABLES_T_START ? "formula of t, X, Y"
                                                         : "formula of t";
     case AB_KEY_VECTOR:
-        return key->variables == AB_VARIABLE_T         ? "[x, y], formulas of t"
-               : key->variables == AB_VARIABLES_XY     ? "[x, y], formulas of x, y"
-               : key->variables == AB_VARIABLES_TXY    ? "[x, y], formulas of t, x, y"
-               : key->variables == AB_VARIABLES_MOTION ? "[x, y], formulas of t, x, y, X, Y"
-                                                       : "[x, y]";
+        return key->variables == AB_VARIABLE_T          ? "[x, y], formulas of t"
+               : key->variables == AB_VARIABLES_XY      ? "[x, y], formulas of x, y"
+               : key->variables == AB_VARIABLES_TXY     ? "[x, y], formulas of t, x, y"
+               : key->variables == AB_VARIABLES_T_START ? "[x, y], formulas of t, X, Y"
+               : key->variables == AB_VARIABLES_MOTION  ? "[x, y], formulas of t, x, y, X, Y"
+                                                        : "[x, y]";
     default: return "mapping or list";
     }
 }

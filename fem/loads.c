@@ -186,12 +186,12 @@ void fem_loads_work(fem_body *body, const ab_step *step) {
 
 /* ---- nodes whose velocity is given --------------------------------------------------------------------------------------- */
 
-/* Whether two formulas give the same velocity all the time; looked at here and there in the run. */
-static bool same_velocity(const ab_number *a, const ab_number *b, double end) {
+/* Whether two formulas give the node that stood at `place` the same velocity all the time; looked at here and there in the run. */
+static bool same_velocity(const ab_number *a, const ab_number *b, double end, const double place[2]) {
     enum { LOOKS = 8 };
     for (int k = 0; k < LOOKS; ++k) {
         const double t = end * k / LOOKS * 0.987;
-        if (ab_number_at(a, t, 0.0, 0.0, 0.0) != ab_number_at(b, t, 0.0, 0.0, 0.0)) return false;
+        if (ab_number_of(a, t, place, place) != ab_number_of(b, t, place, place)) return false;
     }
     return true;
 }
@@ -207,7 +207,9 @@ static void warn_conflict(const fem_body *body, size_t entry, const uint32_t *fi
         if (before == SIZE_MAX || !last->has[d % 2] || (other != SIZE_MAX && before != other)) continue;
         if (!fem_where_node(&last->where, body->mesh, faces, (uint32_t)(d / 2))) continue;
         if (!~(last->absent | spec->fix[before].absent)) continue; /* never both */
-        if (before != other && same_velocity(spec->fix[before].velocity + d % 2, last->velocity + d % 2, body->scene->time_end)) continue;
+        if (before != other &&
+            same_velocity(spec->fix[before].velocity + d % 2, last->velocity + d % 2, body->scene->time_end, body->mesh->x + 2 * (d / 2)))
+            continue;
         if (other == SIZE_MAX) other = before, node = d / 2, direction = (int)(d % 2);
         many += (int)(d % 2) == direction;
     }
@@ -289,10 +291,12 @@ ab_status fem_held_create(fem_body *body, const fem_faces *faces, ab_report *rep
     return status == AB_OK && differs(spec) ? fem_held_choose(body, faces, 0, report) : status;
 }
 
+static bool differs_by_place(const ab_number *number) { return ab_number_variables(number) & AB_VARIABLES_START; }
+
 ab_status fem_held_move(fem_body *body, double time, bool settling, ab_report *report) {
     const ab_body_spec *spec = body->domain.spec;
     for (size_t f = 0; f < 2 * spec->fix_count; ++f)
-        if (spec->fix[f / 2].has[f % 2]) {
+        if (spec->fix[f / 2].has[f % 2] && !differs_by_place(spec->fix[f / 2].velocity + f % 2)) {
             const ab_number *number = spec->fix[f / 2].velocity + f % 2;
             body->given[f] = settling ? 0.0 : ab_number_at(number, time, 0.0, 0.0, 0.0);
             AB_TRY(
@@ -300,7 +304,14 @@ ab_status fem_held_move(fem_body *body, double time, bool settling, ab_report *r
         }
     for (size_t k = 0; k < body->held_count; ++k) {
         const fem_held *held = body->held + k;
-        body->velocity[2 * (size_t)held->node + held->component] = body->given[2 * (size_t)held->fix + held->component];
+        const ab_number *number = spec->fix[held->fix].velocity + held->component;
+        double *velocity = body->velocity + 2 * (size_t)held->node + held->component;
+        *velocity = body->given[2 * (size_t)held->fix + held->component];
+        if (!differs_by_place(number)) continue;
+        const double *start = body->mesh->x + 2 * (size_t)held->node;
+        *velocity = settling ? 0.0 : ab_number_of(number, time, start, start);
+        AB_TRY(ab_number_finite(number, *velocity, time, start, report, "bodies.%s.fix[%u].velocity[%u]", spec->name, held->fix,
+                                held->component));
     }
     return AB_OK;
 }

@@ -3,9 +3,9 @@
  * A body's area vector at a node, sum_p V_p G_ip, is the node's share of its face; but points that stand differently give two bodies that touch different shares at one
  * node, and nodes that only one of them reaches are not seen at all. The smaller of both shares, node by node, adds up to too little, by up to a half. So the face is
  * measured itself: it lies across the normal half way between the bodies, as far as points of both lie beside it. Its length is handed to the nodes around each piece by the hat
- * functions of the grid, which add up to 1 (over the contact points among them), and then, across the face, to contact points in proportion to the mean of both bodies'
- * shares there, so that a basis that reaches further spreads it further. Neither step loses anything: areas of contact points add up to the length, if neighbouring nodes see
- * the same face. So each looks along the mean normal of its neighbours, at all points that may cover what its hat function sees, and contact points that are open beside
+ * functions of the grid, which add up to 1 (over the contact points among them), and then, across the face, to contact points in proportion to the harmonic mean of both bodies'
+ * shares there: a basis that reaches further spreads it further, and a node that one body hardly reaches gets next to nothing, as that body's points would not feel what acts
+ * there (a vane in clay lost a hundredth of its torque so). Neither step loses anything: areas of contact points add up to the length, if neighbouring nodes see the same face. So each looks along the mean normal of its neighbours, at all points that may cover what its hat function sees, and contact points that are open beside
  * shut ones, as those whose normal leans over the corner of a body, hand their part on to these. */
 #ifndef NODE_AREA_H
 #define NODE_AREA_H
@@ -24,7 +24,7 @@ typedef struct node_areas { /* nodes by their place on the grid, and what was fo
     uint32_t *table;        /* number + 1 of the node that hashes there, 0: none; a power of two */
     size_t slots;
     int32_t *place;  /* 2 per node: in cells */
-    double *share;   /* per node: mean of both shares; negative where there is no contact point */
+    double *share;   /* per node: harmonic mean of both shares; negative where there is no contact point */
     uint32_t *node;  /* per contact point; */
     uint32_t *point; /* per node: its contact point */
     size_t capacity;
@@ -206,10 +206,13 @@ static void node_areas_share(node_areas *w, const ab_trace *a, const ab_trace *b
     }
     for (size_t k = 0; k < out->count; ++k) {
         const size_t i = w->node[k];
-        double mean = 0.0;
-        for (size_t c = 0; c < 2; ++c)
-            mean += 0.5 * out->normal[c * out->ld + k] * (a->area_vector[c * a->ld + i] - b->area_vector[c * b->ld + i]);
-        w->share[i] = larger(mean, 0.0);
+        double of_a = 0.0, of_b = 0.0;
+        for (size_t c = 0; c < 2; ++c) {
+            of_a += out->normal[c * out->ld + k] * a->area_vector[c * a->ld + i];
+            of_b -= out->normal[c * out->ld + k] * b->area_vector[c * b->ld + i];
+        }
+        /* in a body thinner than a cell the area vector may point the wrong way */
+        w->share[i] = of_a > 0.0 && of_b > 0.0 ? 2.0 * of_a * of_b / (of_a + of_b) : larger(0.5 * (of_a + of_b), 0.0);
         w->point[i] = (uint32_t)k;
         out->area[k] = 0.0;
     }

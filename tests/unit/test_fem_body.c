@@ -181,6 +181,13 @@ static void test_surface_is_the_outline(void **state) {
     }
 }
 
+static void says(const one *o, const char *text) {
+    bool found = false;
+    for (size_t i = 0; ab_report_text(o->report, i); i++) found = found || strstr(ab_report_text(o->report, i), text);
+    for (size_t i = 0; !found && ab_report_text(o->report, i); i++) print_error("not '%s': %s\n", text, ab_report_text(o->report, i));
+    assert_true(found);
+}
+
 static void test_contact_sees_free_dofs_only_between_trial_and_finish(void **state) {
     (void)state;
     one *o = create("q4", ELASTIC, ", fix: [{where: {side: left}, velocity: [null, 0.5]}]");
@@ -205,6 +212,28 @@ static void test_contact_sees_free_dofs_only_between_trial_and_finish(void **sta
         assert_int_equal(ops->stress(o->domain, &o->step, o->report), AB_OK);
         o->step.number++;
     }
+    destroy(o);
+}
+
+static void test_a_given_velocity_may_be_a_field(void **state) {
+    (void)state;
+    one *o =
+        create("q8", ELASTIC,
+               ", fix: [{where: {side: left}, velocity: [\"-3*Y*t\", \"2*X\"]},\n   {where: {side: bottom}, velocity: [null, \"2*X\"]}]");
+    assert_int_equal(ab_report_warnings(o->report), 0); /* both say the same of the corner */
+    assert_int_equal(step(o), AB_OK);
+    assert_int_equal(step(o), AB_OK);
+    assert_true(o->body->held_count > 4);
+    for (size_t k = 0; k < o->body->held_count; k++) {
+        const fem_held *held = o->body->held + k;
+        const double *x = o->body->mesh->x + 2 * (size_t)held->node, t = o->step.time - 0.5 * o->step.dt;
+        const double given = held->component ? 2 * x[0] : -3 * x[1] * t,
+                     found = o->body->velocity[2 * (size_t)held->node + held->component];
+        assert_true(fabs(found - given) < 1e-12);
+    }
+    destroy(o);
+    o = create("q4", ELASTIC, ", fix: [{where: {side: left}, velocity: [0, X]}, {where: {side: bottom}, velocity: [0, 0.5*X + Y + 1]}]");
+    says(o, "warning: bodies.b.fix[1] gives 1 node another velocity along y than fix[0]");
     destroy(o);
 }
 
@@ -240,13 +269,6 @@ static void test_an_inverted_element_is_named(void **state) {
     destroy(o);
 }
 
-static void says(const one *o, const char *text) {
-    bool found = false;
-    for (size_t i = 0; ab_report_text(o->report, i); i++) found = found || strstr(ab_report_text(o->report, i), text);
-    for (size_t i = 0; !found && ab_report_text(o->report, i); i++) print_error("not '%s': %s\n", text, ab_report_text(o->report, i));
-    assert_true(found);
-}
-
 /* A formula without a value: named at the start, at its line, and in the step where it loses it; dt is not to blame. */
 static void test_formulas_without_a_value_are_named(void **state) {
     (void)state;
@@ -256,6 +278,7 @@ static void test_formulas_without_a_value_are_named(void **state) {
     } wrong[] = {
         {", velocity: [1/(x-3), 0]", "", "error: bodies.b.velocity[0] is inf at t = 0 s at (3, 0.5) m, which is no finite number", true},
         {", fix: [{where: {side: left}, velocity: [0, 1/t]}]", "", "error: bodies.b.fix[0].velocity[1] is inf at t = 0 s, which", true},
+        {", fix: [{where: {side: left}, velocity: [0, 1/(X-X)]}]", "", "error: bodies.b.fix[0].velocity[1] is ", true},
         {", fix: [{where: {side: left}, velocity: [0, sqrt(0.0012-t)]}]", "", "bodies.b.fix[0].velocity[1] is ", false},
         {"", "loads: [{body: b, where: {side: right}, traction: [sqrt(0.0012-t), 0]}]\n", "loads[0].traction[0] is ", false},
         {"", "loads: [{body: b, where: {side: right}, traction: [0, x*sqrt(0.0012-t)]}]\n", "loads[0].traction[1] is ", false},
@@ -279,9 +302,10 @@ static void test_formulas_without_a_value_are_named(void **state) {
 static void test_doubtful_places_are_warned_of(void **state) {
     (void)state;
     one *o = create_with("q4", ELASTIC, "", "loads: [{body: b, at: [50, 50], force: [0, 1]}, {body: b, at: [1.4, 1.1], force: [0, 1]}]\n");
-    says(o,
-         ":10:9: warning: loads[0].at: (50, 50) m is 67.18 m from the nearest node of 'b', more than the size of an element; the force acts "
-         "on that node, at (2.5, 2.5) m");
+    says(
+        o,
+        ":10:9: warning: loads[0].at: (50, 50) m is 67.18 m from the nearest node of 'b', more than the size of an element; the force acts "
+        "on that node, at (2.5, 2.5) m");
     assert_int_equal(ab_report_warnings(o->report), 1);
     destroy(o);
     o = create("q4", ELASTIC,
@@ -319,6 +343,7 @@ int main(void) {
         cmocka_unit_test(test_points_inside_carry_the_mass_and_are_close),
         cmocka_unit_test(test_surface_is_the_outline),
         cmocka_unit_test(test_contact_sees_free_dofs_only_between_trial_and_finish),
+        cmocka_unit_test(test_a_given_velocity_may_be_a_field),
         cmocka_unit_test(test_uniform_strain_gives_uniform_fields),
         cmocka_unit_test(test_an_inverted_element_is_named),
         cmocka_unit_test(test_formulas_without_a_value_are_named),
