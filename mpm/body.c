@@ -1,12 +1,11 @@
 /* body.c: a material-point body as the scheduler sees it: its table of functions, from creation to ledger. */
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "mpm/body.h"
+#include "mpm/share.h"
 
 /* How often a material whose wave speed changes is asked for it, steps. */
 enum { WAVE_SPEED_EVERY = 16 };
@@ -39,6 +38,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
     mpm_light_destroy(body);
+    mpm_share_destroy(body);
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
     mpm_outline_destroy(body->outline);
@@ -56,11 +56,12 @@ static double critical_dt(ab_domain *domain, const char **limit) {
     return body->last_limit;
 }
 
-static void scatter_all(mpm_body *body) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
-    for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0) body->kernel->scatter[body->rows.affine >= 0](body, k);
+static void scatter_tile(mpm_body *body, size_t k, void *unused) {
+    (void)unused;
+    if (body->tiles[k].patch >= 0) body->kernel->scatter[body->rows.affine >= 0](body, k);
 }
+
+static void scatter_all(mpm_body *body) { mpm_each_tile(body, scatter_tile, NULL); }
 
 static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
@@ -80,6 +81,18 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
     return mpm_light_tie(body, report);
 }
 
+typedef struct pass { /* what a pass over the tiles is told */
+    const ab_step *step;
+    bool advance, fuse, remap;
+} pass;
+
+static void stress_tile(mpm_body *body, size_t k, void *context) {
+    const pass *told = context;
+    if (body->tiles[k].patch < 0) return;
+    body->sums[k].culprit = body->kernel->stress(body, k, told->step, told->advance, body->sums + k);
+    if (told->fuse) body->kernel->scatter[body->rows.affine >= 0](body, k);
+}
+
 /* Strain and stress of every tile; with `fuse` each tile scatters at once while its points are in cache, ready for the next step. */
 static ab_status stress_all(mpm_body *body, const ab_step *whole, bool advance, bool fuse, ab_report *report) {
     const bool halves = body->update == MPM_USAVG;
@@ -97,17 +110,11 @@ static ab_status stress_all(mpm_body *body, const ab_step *whole, bool advance, 
                            (body->material->loaded->class_.needs & (AB_NEED_DEFORMATION_GRADIENT | AB_NEED_DENSITY)) &&
                            step->number % WAVE_SPEED_EVERY == 0;
     if (body->f_bar) mpm_volumetric_strain(body, step);
-    int failed = 0;
-    const int none = INT_MAX;
-    int first = none; /* block of the first tile that failed, whichever thread met it */
-#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads) reduction(| : failed) reduction(min : first)
-    for (size_t k = 0; k < body->tile_count; ++k) {
-        if (body->tiles[k].patch < 0) continue;
-        const int culprit = body->kernel->stress(body, k, step, advance, body->sums + k);
-        if (culprit >= 0) failed = 1, first = culprit < first ? culprit : first;
-        if (fuse) body->kernel->scatter[body->rows.affine >= 0](body, k);
-    }
-    if (failed) {
+    mpm_each_tile(body, stress_tile, &(pass){.step = step, .advance = advance, .fuse = fuse});
+    int first = -1; /* block of the first tile that failed, whichever thread met it */
+    for (size_t k = 0; first < 0 && k < body->tile_count; ++k)
+        if (body->tiles[k].patch >= 0) first = body->sums[k].culprit;
+    if (first >= 0) {
         const double *x = mpm_block(body, (size_t)first);
         return ab_report_failure(
             report, "material '%s' of body '%s' gave up at t = %.9g s near (%.6g, %.6g) m (step %ld, dt %.4g s, limit %.4g s): %s; %s",
@@ -219,6 +226,11 @@ static ab_status close_step(mpm_body *body, const ab_step *step, ab_report *repo
     return far ? mpm_too_far(body, step, far, report) : AB_OK;
 }
 
+static void finish_tile(mpm_body *body, size_t k, void *context) {
+    const pass *told = context;
+    if (body->tiles[k].patch >= 0) body->kernel->finish[body->finish](body, k, told->step, told->remap, body->sums + k);
+}
+
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (step->measure) mpm_measure(body, step);
@@ -233,9 +245,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
         mpm_loads_work(body, step);
         mpm_body_force_work(body, step);
     }
-#pragma omp parallel for schedule(dynamic, 1) num_threads(body->threads)
-    for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0) body->kernel->finish[body->finish](body, k, step, remap, body->sums + k);
+    mpm_each_tile(body, finish_tile, &(pass){.step = step, .remap = remap});
     AB_TRY(mpm_outline_move(body, step, report));
     AB_TRY(close_step(body, step, report));
     if (body->update == MPM_USL) mpm_grid_limit_light(body);
@@ -404,6 +414,7 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
+    if (status == AB_OK && !mpm_share_create(body)) status = ab_report_failure(report, "no memory for body '%s'", spec->name);
     if (status == AB_OK) status = mpm_material_start(body, fill, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
     if (status == AB_OK) status = mpm_edges_create(body, fill, report);

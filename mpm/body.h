@@ -62,6 +62,7 @@ typedef struct mpm_sums {                                 /* of one tile, one st
     double external;                                      /* of the body force, per s; set by its own pass */
     double strain, plastic;                               /* increments; these and the next are sums of the stress pass */
     double wave_speed;                                    /* largest, when asked for */
+    int culprit;                                          /* block in which the material gave up, or -1 */
 } mpm_sums;
 
 typedef struct mpm_tile {
@@ -171,6 +172,8 @@ struct mpm_body {
     bool axisymmetric; /* x is the radius, points are rings: volumes in m3, masses and forces of the whole ring */
     ab_f_bar f_bar;
     int threads;
+    struct mpm_share *shares; /* of the tiles, one a thread: see share.h */
+    uint64_t shared_version; /* of the tile list that is shared out; 0: none */
     ab_side_kind side[AB_SIDES];             /* of the grid, in this stage */
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mpm/body.h"
+#include "mpm/share.h"
 
 /* sum[node*lanes + c]: what the nine patches around hold of this tile's own nodes. A patch reaches one node before and size - 1 - AB_TILE nodes behind its tile. The
  * tile's own patch first, then its neighbours', always in one order. */
@@ -53,55 +53,60 @@ static void side_mask(const mpm_body *body, const mpm_tile *tile, int n, double 
     }
 }
 
-void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
-    const double g[2] = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0};
-    const double dt = forces ? step->from_rest ? 0.5 * step->dt : step->dt : 0.0;
+typedef struct trial { /* what makes trial velocities */
+    double g[2], dt;
+} trial;
+
+static void assemble_tile(mpm_body *body, size_t k, void *context) {
+    const trial *t = context;
+    const mpm_tile *tile = body->tiles + k;
     const bool hoops = body->axisymmetric;
-#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
-    for (size_t k = 0; k < body->tile_count; ++k) {
-        const mpm_tile *tile = body->tiles + k;
-        double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
-        add_patches(body, tile, 8, sum);
-        double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
-        uint64_t light = 0;
-        for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
-            const double *s = sum + 8 * n;
-            const double mass = s[NODE_MASS];
-            if (!(mass > 1e-300)) {
-                *(v8 *)own = v8_set(0.0);
-                continue;
-            }
-            light |= (uint64_t)(mass < body->light_limit) << n;
-            const double inverse = 1.0 / mass;
-            double free_[2] = {1.0, 1.0};
-            if (tile->held) side_mask(body, tile, n, free_);
-            for (int c = 0; c < 2; ++c) {
-                const double old = s[NODE_MOMENTUM + c] * inverse * free_[c];
-                double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * g[c];
-                if (hoops && c == 0) force += s[NODE_HOOP];
-                own[OWN_OLD + c] = old;
-                own[OWN_VELOCITY + c] = (old + force * inverse * dt) * free_[c];
-                own[OWN_INVERSE + c] = inverse * free_[c];
-            }
-            own[OWN_MASS] = mass;
+    double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
+    add_patches(body, tile, 8, sum);
+    double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+    uint64_t light = 0;
+    for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
+        const double *s = sum + 8 * n;
+        const double mass = s[NODE_MASS];
+        if (!(mass > 1e-300)) {
+            *(v8 *)own = v8_set(0.0);
+            continue;
         }
-        if (body->light) body->light[k] = light;
+        light |= (uint64_t)(mass < body->light_limit) << n;
+        const double inverse = 1.0 / mass;
+        double free_[2] = {1.0, 1.0};
+        if (tile->held) side_mask(body, tile, n, free_);
+        for (int c = 0; c < 2; ++c) {
+            const double old = s[NODE_MOMENTUM + c] * inverse * free_[c];
+            double force = s[NODE_FORCE_X + c] + s[NODE_FORCE_Y + c] + mass * t->g[c];
+            if (hoops && c == 0) force += s[NODE_HOOP];
+            own[OWN_OLD + c] = old;
+            own[OWN_VELOCITY + c] = (old + force * inverse * t->dt) * free_[c];
+            own[OWN_INVERSE + c] = inverse * free_[c];
+        }
+        own[OWN_MASS] = mass;
+    }
+    if (body->light) body->light[k] = light;
+}
+
+void mpm_grid_assemble(mpm_body *body, const ab_step *step, bool forces) {
+    trial t = {.g = {body->gravity ? step->gravity[0] : 0.0, body->gravity ? step->gravity[1] : 0.0},
+               .dt = forces ? step->from_rest ? 0.5 * step->dt : step->dt : 0.0};
+    mpm_each_tile(body, assemble_tile, &t);
+}
+
+static void assemble_remap_tile(mpm_body *body, size_t k, void *unused) {
+    (void)unused;
+    double sum[2 * AB_TILE_NODES] __attribute__((aligned(64)));
+    add_patches(body, body->tiles + k, 2, sum);
+    double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
+    for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
+        own[OWN_VELOCITY] = sum[2 * n] * own[OWN_INVERSE];
+        own[OWN_VELOCITY + 1] = sum[2 * n + 1] * own[OWN_INVERSE + 1];
     }
 }
 
-void mpm_grid_assemble_remap(mpm_body *body) {
-#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
-    for (size_t k = 0; k < body->tile_count; ++k) {
-        const mpm_tile *tile = body->tiles + k;
-        double sum[2 * AB_TILE_NODES] __attribute__((aligned(64)));
-        add_patches(body, tile, 2, sum);
-        double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
-        for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
-            own[OWN_VELOCITY] = sum[2 * n] * own[OWN_INVERSE];
-            own[OWN_VELOCITY + 1] = sum[2 * n + 1] * own[OWN_INVERSE + 1];
-        }
-    }
-}
+void mpm_grid_assemble_remap(mpm_body *body) { mpm_each_tile(body, assemble_remap_tile, NULL); }
 
 /* Lays what `lanes` numbers per node are in the nine tiles around into a patch; nodes of tiles that are not there are 0. A record of `record` doubles per node;
  * two lanes: the first two of it; four: of the nodes' own records, the velocity and its change. */

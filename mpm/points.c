@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "mpm/body.h"
+#include "mpm/share.h"
 
 void mpm_rows_plan(mpm_body *body) {
     const ab_class *class_ = &body->material->loaded->class_;
@@ -256,6 +256,25 @@ static int compare_keys(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+typedef struct sorting {
+    uint16_t *moves;
+    uint32_t (*counts)[9];
+    const mpm_tile *old_tiles;
+    long (*sources)[9];
+} sorting;
+
+static void find_tile_moves(mpm_body *body, size_t k, void *context) {
+    const sorting *s = context;
+    find_moves(body, body->tiles + k, s->moves, s->counts[k]);
+}
+
+static void collect_tile(mpm_body *body, size_t k, void *context) {
+    const sorting *s = context;
+    if (body->tiles[k].patch >= 0)
+        collect(body, body->tiles + k, s->old_tiles, s->sources[k], (const uint32_t(*)[9])s->counts, s->moves, body->spare_blocks,
+                body->spare_ids);
+}
+
 ab_status mpm_points_sort(mpm_body *body, ab_report *report) {
     const size_t old_count = body->tile_count;
     mpm_tile *old_tiles = malloc((old_count + 1) * sizeof *old_tiles);
@@ -270,8 +289,7 @@ ab_status mpm_points_sort(mpm_body *body, ab_report *report) {
     }
     memcpy(old_tiles, body->tiles, old_count * sizeof *old_tiles);
     memcpy(old_keys, body->keys, old_count * sizeof *old_keys);
-#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
-    for (size_t k = 0; k < old_count; ++k) find_moves(body, old_tiles + k, moves, counts[k]);
+    mpm_each_tile(body, find_tile_moves, &(sorting){.moves = moves, .counts = counts});
 
     size_t n = 0;
     for (size_t k = 0; k < old_count; ++k)
@@ -309,10 +327,7 @@ ab_status mpm_points_sort(mpm_body *body, ab_report *report) {
         status = no_memory(body, blocks * 8, report);
         goto out;
     }
-#pragma omp parallel for schedule(dynamic, 4) num_threads(body->threads)
-    for (size_t k = 0; k < body->tile_count; ++k)
-        if (body->tiles[k].patch >= 0)
-            collect(body, body->tiles + k, old_tiles, sources[k], (const uint32_t(*)[9])counts, moves, body->spare_blocks, body->spare_ids);
+    mpm_each_tile(body, collect_tile, &(sorting){.moves = moves, .counts = counts, .old_tiles = old_tiles, .sources = sources});
 
     double *swapped = body->blocks;
     body->blocks = body->spare_blocks;
