@@ -79,7 +79,7 @@ typedef struct kind { /* elements of one type, gathered one by one */
     size_t count, nodes, capacity, *id, *node;
 } kind;
 
-enum { TYPES = 256, MOST_GAPS = 4000000 };
+enum { TYPES = 256, MOST_GAPS = 200000 };
 
 static double number_of(int pipe, void *library, const char *option) {
     double number = 0;
