@@ -373,7 +373,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.view.struct_size = sizeof(ab_points);
         pair->points.view.dimension = 2;
         pair->points.view.density = softer_density(scene, pair);
-        pair->points.axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
+        pair->points.view.axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
         pair->points.meshes = is_mesh(pair->a) && is_mesh(pair->b);
         pair->points.view.fixed_places = pair->points.meshes && (spec->responder->class_.needs & AB_NEED_FIXED_PLACES);

@@ -58,7 +58,6 @@ typedef struct contact_points {
     bool shared;                 /* some dof serves more than one point: one point after the other, and again until impulses stand still */
     bool held;         /* of some point: normal and tangential answers act on each other (one direction of a dof is held, a body turns) */
     bool surfaces;     /* points come from surfaces, not from shared nodes */
-    bool axisymmetric; /* finders work in the plane; areas are those of rings */
     bool meshes;       /* both bodies are meshes or rigid */
     bool gives;        /* bodies of points by surfaces: see rounds.c */
     bool distances;    /* the response needs them */

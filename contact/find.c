@@ -135,7 +135,7 @@ ab_status contact_find(contact_pair *pair, const ab_step *step, ab_report *repor
     const int code = pair->spec->finder->contact.find(pair->finder, &a, &b, p);
     if (code != 0) return contact_complain(pair, &pair->finder_service, "find", code, report);
     pair->failures += p->failures;
-    if (points->axisymmetric) make_rings(p);
+    if (p->axisymmetric) make_rings(p);
     if (needs & AB_NEED_SURFACE) contact_watch_depth(pair, report);
     return AB_OK;
 }

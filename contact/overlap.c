@@ -164,7 +164,7 @@ static double most_crowded(const ab_scene *scene, const contact_pair *pair) {
     double most = 0.0;
     for (size_t k = 0; k < pair->node_count; ++k) {
         double room = a.mass[pair->nodes_a[k] * a.stride] / density_a + b.mass[pair->nodes_b[k] * b.stride] / density_b;
-        if (pair->points.axisymmetric) { /* volumes of rings; on the axis there is half of one only */
+        if (pair->points.view.axisymmetric) { /* volumes of rings; on the axis there is half of one only */
             const int column = ab_tile_x(a.key[pair->nodes_a[k] / AB_TILE_NODES]) * AB_TILE + (int)(pair->nodes_a[k] % AB_TILE);
             room = column > 0 ? room / ab_circumference(column * scene->grid_cell) : 0.0;
         }

@@ -37,20 +37,6 @@ static void check_body(ab_scene_reader *r, const ab_body_spec *body) {
         ab_report_error(r->base.report, body->mark,
                         "body '%s' reaches to x = %.10g m, but in an axisymmetric scene x is the radius; draw the half right of the axis",
                         body->name, low[0]);
-    if (body->surface_points > 0.0)
-        ab_report_error(r->base.report, body->mark,
-                        "bodies.%s.surface: points on the outline are not there yet in axisymmetric scenes; leave the key out", body->name);
-}
-
-static bool is_points(const ab_body_spec *body) { return body->method != NULL && strcmp(body->method, "material-points") == 0; }
-
-static void check_contact(ab_scene_reader *r, size_t number) {
-    const ab_contact_spec *contact = &r->scene->contacts[number];
-    const ab_body_spec *a = &r->scene->bodies[contact->body[0]], *b = &r->scene->bodies[contact->body[1]];
-    if (contact->finder != NULL && (contact->finder->class_.needs & AB_NEED_SURFACE) && is_points(a) && is_points(b))
-        ab_report_error(r->base.report, contact->mark,
-                        "contact[%zu]: '%s' between two bodies of points is not there yet in axisymmetric scenes; use multi-velocity",
-                        number, contact->finder->class_.name);
 }
 
 void ab_scene_hold_radius(ab_scene_reader *r, ab_body_spec *body) {
@@ -75,7 +61,6 @@ void ab_scene_check_axisymmetric(ab_scene_reader *r) {
                         "body_force for a force "
                         "along the radius");
     for (size_t b = 0; b < scene->body_count; b++) check_body(r, &scene->bodies[b]);
-    for (size_t c = 0; c < scene->contact_count; c++) check_contact(r, c);
     if (scene->grid_cell > 0.0 && scene->grid_from[0] > 0.0)
         for (size_t b = 0; b < scene->body_count; b++) {
             if (scene->contact_count == 0 && (scene->bodies[b].method == NULL || strcmp(scene->bodies[b].method, "material-points") == 0))

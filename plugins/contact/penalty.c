@@ -138,8 +138,11 @@ static double loaded_spring(double held, double m, double c_dt, double free, dou
     return lambda;
 }
 
-/* h, or in three dimensions h^2. */
-static double cell_face(const ab_points *p) { return p->dimension == 3 ? p->cell * p->cell : p->cell; }
+/* Of a cell of the grid: h, in three dimensions h^2, of rings what h sweeps there, at the axis what a cell beside it has in its middle. */
+static double cell_face(const ab_points *p, size_t i) {
+    if (p->axisymmetric) return 6.283185307179586 * fmax(p->position[i], 0.5 * p->cell) * p->cell;
+    return p->dimension == 3 ? p->cell * p->cell : p->cell;
+}
 
 /* A point that is a node, on both sides: no other has its masses. */
 static int alone(const ab_points *p, size_t i) { return p->a_start[i + 1] - p->a_start[i] == 1 && p->b_start[i + 1] - p->b_start[i] == 1; }
@@ -147,7 +150,7 @@ static int alone(const ab_points *p, size_t i) { return p->a_start[i + 1] - p->a
 /* Stiffness of point i along the normal, N/m. Of mass: points that are several on the nodes of a cell share their masses as they share its face. */
 static double normal_stiffness(const penalty *law, const ab_points *p, size_t i) {
     if (law->of == OF_MODULUS) return law->stiffness * p->modulus / p->cell * p->area[i];
-    return law->stiffness * p->normal_mass[i] / (p->dt * p->dt) * (alone(p, i) ? 1.0 : fmin(1.0, p->area[i] / cell_face(p)));
+    return law->stiffness * p->normal_mass[i] / (p->dt * p->dt) * (alone(p, i) ? 1.0 : fmin(1.0, p->area[i] / cell_face(p, i)));
 }
 
 /* What the host's bound of the step, 2 sqrt(m/k), has to know of a spring of modulus. Points that share nodes with others swing with all of a cell's face; and a
@@ -155,7 +158,7 @@ static double normal_stiffness(const penalty *law, const ab_points *p, size_t i)
  * a column with its mass. */
 static double bounding_stiffness(const penalty *law, const ab_points *p, size_t i) {
     static const double COLUMN = 8.0; /* a node on the face between two equal bodies has rho h A/4: light is less than half of that */
-    double area = alone(p, i) ? p->area[i] : fmax(p->area[i], cell_face(p));
+    double area = alone(p, i) ? p->area[i] : fmax(p->area[i], cell_face(p, i));
     if (p->density > 0.0) area = fmin(area, COLUMN * p->normal_mass[i] / (p->density * p->cell));
     return law->stiffness * p->modulus / p->cell * area;
 }
@@ -215,7 +218,7 @@ static const ab_contact_ops OPS = {sizeof OPS, NULL, respond};
 static const ab_class CLASS = {
     .struct_size = sizeof CLASS,
     .kind = AB_CONTACT,
-    .spaces = AB_PLANE_STRAIN | AB_SPACE_3D, /* lengths and masses of the plane are compared */
+    .spaces = AB_PLANE_STRAIN | AB_AXISYMMETRIC | AB_SPACE_3D,
     .needs = AB_NEED_GAP,
     .gives = AB_GIVE_IMPULSE,
     .nparam = sizeof PARAMS / sizeof *PARAMS,

@@ -44,6 +44,14 @@ outer="bodies.outer={method: finite-elements, material: steel, mesh: {box: [[cf,
 variant "layers, points and elements on segments" axi_two_tubes constants.h=0.1 "$outer" "contact[0].algorithm=point-to-segment"
 variant "layers, elements that do not match" axi_two_tubes "$inner" "$outer" "contact[0].algorithm=point-to-segment"
 column="bodies.column={method: finite-elements, material: soil, gravity: false, mesh: {box: [[0, 0], [R, L]], elements: [5, 20], type: q4}, fix: [{where: {side: bottom}, velocity: [null, 0]}, {where: {side: right}, velocity: [0, null]}]}"
+segments="algorithm: point-to-segment"
+between="bodies: [column, piston]"
+# Springs of 0.5 M/h give by p h/(0.5 M).
+variant "piston on springs" axi_piston "contact[0]={$between, algorithm: multi-velocity, response: penalty, stiffness_of: modulus}" 'expect[1].reference="-p*(L + 2*h)/M"' "$(e 1 1e-3)"
+variant "piston on springs, stiffness of mass" axi_piston "contact[0]={$between, algorithm: multi-velocity, response: penalty}" "$(e 1 0.04)"
+variant "piston on surface points" axi_piston "contact[0]={$between, $segments, response: coulomb, friction: 0.3}" bodies.column.surface=points bodies.column.basis=cpdi "$(e 1 1e-3)"
+variant "layers of points on segments" axi_two_tubes constants.h=0.1 "contact[0].algorithm=point-to-segment"
+variant "layers, surface points" axi_two_tubes constants.h=0.1 "contact[0].algorithm=point-to-segment" bodies.inner.surface=points bodies.inner.basis=cpdi bodies.outer.basis=cpdi
 variant "piston on elements" axi_piston "$column" "contact[0].algorithm=point-to-segment"
 variant "Hill, q8r" axi_hill "bodies.tube={method: finite-elements, material: steel, mesh: {box: [[a, 0], [b, '2*h']], elements: [10, 1], type: q8r}, $fix}" constants.share=1 time.cfl=0.9
 # The strip footing about the axis: a smooth flat circular punch, of which a half space bears 5.69 c_u (Shield 1955); study_footing.sh has the finer mesh.
@@ -69,6 +77,4 @@ wrong 'gravity=[1, 0]' 'point away from the axis'
 wrong 'grid.from=[-0.1, 0]' 'x is the radius'
 wrong 'grid.from=[0.1, 0]' 'begins at the axis'
 wrong 'grid.sides={left: fixed}' 'it is the axis'
-wrong 'contact[0].response=penalty' "does not work in axisymmetric scenes"
-wrong 'bodies.column.surface=points' 'not there yet in axisymmetric scenes'
 exit $((missed > 0))
