@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 22
+# cost: 32
 # Scenes about an axis by other bases, meshes, elements and pairs of methods than the scenes themselves say; columns of the plane about an axis; and the example of docs/axisymmetric.md.
 # test_axisymmetric.sh BUILD
 build=$(realpath "${1:?the build folder}")
