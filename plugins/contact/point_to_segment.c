@@ -17,9 +17,11 @@
 #include <string.h>
 
 #include "facing_length.h"
+#include "segment_stencils.h"
 
 enum { CLOSED, NEWTON };
 enum { BOTH, FIRST, SECOND };
+enum { CENTRE, OUTLINE };
 enum { MOST_SLOTS = 4 };
 static const double NEAR = 0.03; /* of a cell: given out although the bodies do not meet in this step */
 static const double BENT = 1e-4; /* bow of a face over its length: more is a round body, less what a flat one is bent by */
@@ -31,17 +33,22 @@ static const ab_param PARAMS[] = {
      "both|first|second", AB_CHOICE, 0, BOTH, 0, 0},
     {"projection", "1", "onto straight faces: closed, or the iteration that quadratic faces need (the same answer)", "closed|newton",
      AB_CHOICE, 0, CLOSED, 0, 0},
+    {"touching", "1",
+     "what of a material point is stopped and pushed: its centre, or the outline of its own body where it touches. Between two bodies of "
+     "points",
+     "centre|outline", AB_CHOICE, 0, CENTRE, 0, 0},
 };
 
 typedef struct remembered { /* a contact point of the last step */
     uint64_t key;
     double normal[2];
     uint32_t face; /* where on the other body it touched */
+    uint32_t own;  /* and on which face of its own; UINT32_MAX: on none */
     double xi, gap;
 } remembered;
 
 typedef struct placed { /* where a contact point of this step lies, for its area */
-    uint32_t pass, face, vertex;
+    uint32_t pass, face, vertex, own;
     double xi;
     size_t point;
 } placed;
@@ -49,7 +56,7 @@ typedef struct placed { /* where a contact point of this step lies, for its area
 typedef struct segments {
     const ab_host *host;
     double half_size;
-    int passes, projection;
+    int passes, projection, touching;
     remembered *before;
     size_t before_count, before_bytes;
     placed *placed;
@@ -67,6 +74,7 @@ static int create(const ab_host *host, const ab_value *settings, void **self) {
     s->half_size = settings[0].real;
     s->passes = (int)settings[1].integer;
     s->projection = (int)settings[2].integer;
+    s->touching = (int)settings[3].integer;
     *self = s;
     return 0;
 }
@@ -165,42 +173,6 @@ static int look_from_round_face(const pass *p, size_t i, uint32_t vertex, hit *h
     return moved;
 }
 
-/* Adds weight on a dof to a stencil that begins at `begin` and ends before *end. */
-static void add_weight(uint32_t *dofs, double *weights, size_t begin, size_t *end, uint32_t dof, double weight) {
-    for (size_t k = begin; k < *end; ++k)
-        if (dofs[k] == dof) {
-            weights[k] += weight;
-            return;
-        }
-    dofs[*end] = dof;
-    weights[(*end)++] = weight;
-}
-
-/* Weights of the face's vertices at xi. */
-static void shape(int bent, double xi, double phi[3]) {
-    phi[0] = bent ? 0.5 * xi * (xi - 1.0) : 0.5 * (1.0 - xi);
-    phi[1] = bent ? 0.5 * xi * (xi + 1.0) : 0.5 * (1.0 + xi);
-    phi[2] = bent ? (1.0 - xi) * (1.0 + xi) : 0.0;
-}
-
-/* Adds the stencil of a place on a face. */
-static void add_place(const ab_surface *s, uint32_t face, double xi, uint32_t *dofs, double *weights, size_t begin, size_t *end) {
-    const uint32_t *v = s->face_vertex + 3 * (size_t)face;
-    const int vertices = v[2] == UINT32_MAX ? 2 : 3;
-    double phi[3];
-    shape(vertices == 3, xi, phi);
-    for (int k = 0; k < vertices; ++k)
-        for (size_t e = s->vertex_start[v[k]]; phi[k] != 0.0 && e < s->vertex_start[v[k] + 1]; ++e)
-            add_weight(dofs, weights, begin, end, s->vertex_dof[e], phi[k] * s->vertex_weight[e]);
-}
-
-static size_t stencil_of_face(const ab_surface *s, uint32_t face) {
-    const uint32_t *v = s->face_vertex + 3 * (size_t)face;
-    size_t size = 0;
-    for (int k = 0; k < (v[2] == UINT32_MAX ? 2 : 3); ++k) size += s->vertex_start[v[k] + 1] - s->vertex_start[v[k]];
-    return size;
-}
-
 /* own_face: the face of its own body that the place is on, at own_xi; UINT32_MAX: it is point i itself. */
 static int emit(const pass *p, size_t i, const hit *h, uint32_t own_face, double own_xi, double gap, double area, uint64_t key) {
     segments *self = p->self;
@@ -234,7 +206,7 @@ static int emit(const pass *p, size_t i, const hit *h, uint32_t own_face, double
     if (out->distance) out->distance[n] = larger(gap, 0.0);
     out->area[n] = area;
     out->key[n] = key;
-    self->placed[n] = (placed){p->number, h->face, p->points->point_vertex ? p->points->point_vertex[i] : UINT32_MAX, h->xi, i};
+    self->placed[n] = (placed){p->number, h->face, p->points->point_vertex ? p->points->point_vertex[i] : UINT32_MAX, own_face, h->xi, i};
     out->count = n + 1;
     return 1;
 }
@@ -266,6 +238,24 @@ static void hold_place(const pass *p, size_t i, uint64_t key, hit *h) {
     *h = held;
 }
 
+static const double BY_THE_FACE = 0.25; /* of a cell: no point that stands on its outline is further from it */
+
+/* With touching: outline, the face of its own body that a material point touches with, half its size from its centre: that moves as the outline does there. With its centre's
+ * velocity in place of it the two passes ask for two things, that the centres of a go with the faces of b and those of b with the faces of a: held both, as a tie has
+ * to, nothing within half a point of the face can be strained, and contact points pull although a uniform pressure goes through. (But blocks at rest that quiver by flip rock
+ * sooner: tests/stability/rest.yaml.) UINT32_MAX: its centre. */
+static uint32_t own_face_of(const pass *p, size_t i, uint64_t base, const double normal[2], double half, double *xi) {
+    const ab_surface *s = p->points;
+    if (p->self->touching == CENTRE || s->point_vertex || !s->face_count || !(half > 0.0)) return UINT32_MAX;
+    const double x[2] = {s->point_position[i] - half * normal[0], s->point_position[s->point_ld + i] - half * normal[1]};
+    uint32_t from = UINT32_MAX;
+    for (uint32_t k = 0; k < MOST_SLOTS && from == UINT32_MAX; ++k) {
+        const remembered *was = recall(p->self, base | k);
+        if (was) from = was->own;
+    }
+    return own_place(s, x, BY_THE_FACE * p->out->cell, from, xi);
+}
+
 static int contact_of_point(const pass *p, size_t i, hits *all) {
     const ab_surface *s = p->points;
     const double t[2] = {s->point_position[i], s->point_position[s->point_ld + i]};
@@ -290,7 +280,8 @@ static int contact_of_point(const pass *p, size_t i, hits *all) {
         if (p->out->fixed_places) hold_place(p, i, base, &h);
         const double half = half_size(s, i, h.normal), width = s->point_area[i],
                      area = half > 0.0 ? width * width / (2.0 * half) : width; /* wherever it lies: share_area */
-        const uint32_t own_face = round_[least] ? p->around[2 * (size_t)vertex] : UINT32_MAX;
+        const uint32_t own_face =
+            round_[least] ? p->around[2 * (size_t)vertex] : own_face_of(p, i, base, h.normal, p->self->half_size * half, own_xi + least);
         const double open = p->out->fixed_places ? h.signed_distance - p->self->half_size * half : gap[least];
         if (!emit(p, i, &h, own_face, own_xi[least], open, area, base | take_slot(p->self, base, h.normal, &taken))) return 0;
         for (size_t k = 0; k < all->count; ++k)
@@ -351,8 +342,9 @@ static int remember(segments *self, const ab_points *out) {
     if (!room(self->host, &self->before, &self->before_bytes, (out->count + 1) * sizeof *self->before)) return 0;
     for (size_t n = 0; n < out->count; ++n) {
         const double sign = self->placed[n].pass == 0 ? -1.0 : 1.0;
-        self->before[n] = (remembered){
-            out->key[n], {sign * out->normal[n], sign * out->normal[out->ld + n]}, self->placed[n].face, self->placed[n].xi, out->gap[n]};
+        self->before[n] = (remembered){out->key[n],          {sign * out->normal[n], sign * out->normal[out->ld + n]},
+                                       self->placed[n].face, self->placed[n].own,
+                                       self->placed[n].xi,   out->gap[n]};
     }
     self->before_count = out->count;
     qsort(self->before, out->count, sizeof *self->before, compare_keys);
