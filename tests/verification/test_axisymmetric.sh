@@ -55,7 +55,7 @@ variant "layers, surface points" axi_two_tubes constants.h=0.1 "contact[0].algor
 variant "piston on elements" axi_piston "$column" "contact[0].algorithm=point-to-segment"
 variant "Hill, q8r" axi_hill "bodies.tube={method: finite-elements, material: steel, mesh: {box: [[a, 0], [b, '2*h']], elements: [10, 1], type: q8r}, $fix}" constants.share=1 time.cfl=0.9
 # The strip footing about the axis: a smooth flat circular punch, of which a half space bears 5.69 c_u (Shield 1955); study_footing.sh has the finer mesh.
-variant "circular punch on clay, q8r" fe_footing space=axisymmetric constants.cells=4 'bodies.footing.shape={box: [[0, 0], [b, "b/4"]]}' bodies.ground.mesh.type=q8r bodies.ground.mesh.f_bar=false 'expect[0].reference="-5.69*cu*pi*b^2"' "$(e 0 0.08)"
+variant "circular punch on clay, q8r" fe_footing space=axisymmetric constants.cells=4 'constants.way=0.00024*b' constants.end=0.4 'bodies.footing.shape={box: [[0, 0], [b, "b/4"]]}' bodies.ground.mesh.type=q8r bodies.ground.mesh.f_bar=false 'expect[0].reference="-5.69*cu*pi*b^2"' "$(e 0 0.108)"
 
 # Columns about the axis that are confined, or have nu = 0, are those of the plane: all that does not depend on their cross section.
 intensive() { # scene, how many of its first expects
