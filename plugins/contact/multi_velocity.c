@@ -8,6 +8,7 @@
 #include "closest_approach.h"
 #include "node_area.h"
 #include "node_normals.h"
+#include "place_of_impulse.h"
 
 static const double CORNER = 0.866; /* cosine between two normals that lean by more than a face does */
 
@@ -23,6 +24,7 @@ enum {
     NORMAL_FACES
 };
 enum { GAP_DISTANCE, GAP_NONE, GAP_REGRESSION };
+enum { NODES_PER_THREAD = 32, NODES_AT_ONCE = 4 }; /* a thread is worth its waking up from so many on */
 
 typedef struct multi_velocity {
     const ab_host *host;
@@ -76,16 +78,6 @@ static double unit(double *v, uint32_t dimension) {
     if (length > 0.0)
         for (uint32_t c = 0; c < dimension; ++c) v[c] /= length;
     return length;
-}
-
-/* Half size of near point k in direction n: sqrt(n.A.n). */
-static double half_size(const ab_trace *t, size_t k, const double n[3]) {
-    const double *e = t->near_extent + k;
-    const size_t ld = t->near_ld;
-    const double square = t->dimension == 2 ? n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + 2.0 * n[0] * n[1] * e[2 * ld]
-                                            : n[0] * n[0] * e[0] + n[1] * n[1] * e[ld] + n[2] * n[2] * e[2 * ld] +
-                                                  2.0 * (n[0] * n[1] * e[3 * ld] + n[1] * n[2] * e[4 * ld] + n[2] * n[0] * e[5 * ld]);
-    return sqrt(larger(square, 0.0));
 }
 
 /* How far the material of a body reaches along +-n from the node: the largest of sign n.(x - x_i) + half size, over the points beside the node (within half
@@ -146,83 +138,6 @@ static double distance_to(const ab_trace *t, size_t i, const double n[3]) {
             least, hypot(larger(fabs(along) - half_size(t, k, n), 0.0), across > 0.0 ? larger(across - half_size(t, k, r), 0.0) : 0.0));
     }
     return least;
-}
-
-typedef struct
-    support { /* where a body reaches furthest along a direction, near a node: from the node, m; how far those places spread across it, m2 */
-    double place[3], variance;
-    int known;
-} support;
-
-static const double AS_FAR = 0.001, LEAST_VARIANCE = 1e-6; /* of a cell, of its square */
-
-/* The place along sign n: where the points' domains that reach as far as the furthest, or almost, do so. Points as in `reach`, so that the gap is that of this place. */
-static support support_along(const ab_trace *t, size_t i, const double n[3], double sign) {
-    const uint32_t d = t->dimension;
-    const size_t ld = t->near_ld;
-    support found = {.variance = 0.0};
-    double furthest = -INFINITY, weights = 0.0, square = 0.0;
-    for (int pass = 0; pass < 2; ++pass)
-        for (size_t k = t->near_start[i]; k < t->near_start[i + 1]; ++k) {
-            const double *e = t->near_extent + k, half = half_size(t, k, n);
-            double p[3] = {0}, along = 0.0, across2 = 0.0;
-            for (uint32_t c = 0; c < d; ++c) {
-                p[c] = t->near_position[c * ld + k] - t->position[c * t->ld + i];
-                along += sign * n[c] * p[c];
-                across2 += p[c] * p[c];
-            }
-            if (across2 - along * along > 0.25 * t->cell * t->cell) continue;
-            if (pass == 0) {
-                furthest = larger(furthest, along + half);
-                continue;
-            }
-            const double near = 1.0 - (furthest - along - half) / (AS_FAR * t->cell), w = near > 0.0 ? near * near : 0.0;
-            if (w == 0.0) continue;
-            for (uint32_t c = 0; c < d; ++c) { /* the place of an ellipse that lies furthest along n is A.n/sqrt(n.A.n) from its middle */
-                const uint32_t next = (c + 1) % 3, last = (c + 2) % 3;
-                const double lean = d == 2 ? n[c] * e[c * ld] + n[!c] * e[2 * ld]
-                                           : n[c] * e[c * ld] + n[next] * e[(c + 3) * ld] + n[last] * e[(last + 3) * ld];
-                p[c] += (half > 0.0 ? sign * lean / half : 0.0) - sign * (along + half) * n[c];
-            }
-            weights += w;
-            for (uint32_t c = 0; c < d; ++c) {
-                found.place[c] += w * p[c];
-                square += w * p[c] * p[c];
-            }
-        }
-    if (!(weights > 0.0)) return found;
-    double mean2 = 0.0;
-    for (uint32_t c = 0; c < d; ++c) {
-        found.place[c] /= weights;
-        mean2 += found.place[c] * found.place[c];
-    }
-    found.variance = larger(square / weights - mean2, 0.0) + LEAST_VARIANCE * t->cell * t->cell;
-    for (uint32_t c = 0; c < d; ++c) found.place[c] += sign * furthest * n[c];
-    found.known = 1;
-    return found;
-}
-
-/* Where an impulse acts, from the node: there, but on a rigid body, which turns by it. A wheel that were pushed at nodes would roll as a polygon with sides of a
- * cell, braked at every corner. So it is pushed where it reaches furthest towards the other body; where it is flat, and that is no one place, beside the node. */
-static void place_of_impulse(const ab_trace *a, const ab_trace *b, size_t i, const double n[3], double place[3]) {
-    const support of_a = isinf(a->stiffness) ? support_along(a, i, n, 1.0) : (support){.known = 0},
-                  of_b = isinf(b->stiffness) ? support_along(b, i, n, -1.0) : (support){.known = 0};
-    place[0] = place[1] = place[2] = 0.0;
-    if (!of_a.known && !of_b.known) return;
-    double along = 0.0, across[3] = {0}, sum = 0.0, sides = 0.0;
-    for (int side = 0; side < 2; ++side) {
-        const support *s = side ? &of_b : &of_a;
-        if (!s->known) continue;
-        double far = 0.0;
-        for (uint32_t c = 0; c < a->dimension; ++c) far += s->place[c] * n[c];
-        for (uint32_t c = 0; c < a->dimension; ++c) across[c] += (s->place[c] - far * n[c]) / s->variance;
-        sum += 1.0 / s->variance;
-        along += far;
-        sides += 1.0;
-    }
-    /* 1 where it is one place; 0 where all of the half cells round the node reach as far */
-    const double one = larger(1.0 - 12.0 / (sum * a->cell * a->cell), 0.0);
-    for (uint32_t c = 0; c < a->dimension; ++c) place[c] = along / sides * n[c] + one * across[c] / sum;
 }
 
 /* The average of both normals. Where they disagree one of them is no normal: an edge, a body that only just reaches the node, the far surface of a body
@@ -347,6 +262,23 @@ static int node_normal(const multi_velocity *mv, const ab_trace *a, const ab_tra
     return less > least || (alike > 0.0 && more > least);
 }
 
+static const double NO_CONTACT = -1.0; /* in place of an area */
+
+/* Normal, gap, area and place of node i, at i of the list, whether or not it will stand there. */
+static void look_at_node(const multi_velocity *mv, const ab_trace *a, const ab_trace *b, size_t i, ab_points *out) {
+    double normal[3], area = 0.0, place[3];
+    out->area[i] = NO_CONTACT;
+    if (!node_normal(mv, a, b, i, normal, &area)) return;
+    out->area[i] = area;
+    out->gap[i] = mv->gap != GAP_NONE ? node_gap(mv, a, b, i, normal) : 0.0;
+    place_of_impulse(a, b, i, normal, place);
+    for (uint32_t c = 0; c < a->dimension; ++c) {
+        out->normal[c * out->ld + i] = normal[c];
+        out->position[c * out->ld + i] = a->position[c * a->ld + i] + place[c];
+    }
+    if (out->distance) out->distance[i] = distance_to(a->stiffness >= b->stiffness ? a : b, i, normal);
+}
+
 static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out) {
     multi_velocity *mv = self;
     const int measure = out->measure_area && a->dimension == 2;
@@ -357,10 +289,10 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
     const uint32_t d = a->dimension;
     size_t n = 0;
     out->a_start[0] = out->b_start[0] = 0;
+#pragma omp parallel for schedule(dynamic, NODES_AT_ONCE) if (a->count >= NODES_PER_THREAD)
+    for (size_t i = 0; i < a->count; ++i) look_at_node(mv, a, b, i, out);
     for (size_t i = 0; i < a->count; ++i) {
-        double normal[3], area = 0.0, gap = 0.0;
-        if (!node_normal(mv, a, b, i, normal, &area)) continue;
-        if (mv->gap != GAP_NONE) gap = node_gap(mv, a, b, i, normal);
+        if (out->area[i] == NO_CONTACT) continue;
         size_t sa = out->a_start[n], sb = out->b_start[n];
         for (size_t s = a->stencil_start[i]; s < a->stencil_start[i + 1]; ++s, ++sa) {
             out->a_dof[sa] = a->stencil_dof[s];
@@ -370,15 +302,13 @@ static int find(void *self, const ab_trace *a, const ab_trace *b, ab_points *out
             out->b_dof[sb] = b->stencil_dof[s];
             out->b_weight[sb] = b->stencil_weight[s];
         }
-        double place[3];
-        place_of_impulse(a, b, i, normal, place);
-        for (uint32_t c = 0; c < d; ++c) {
-            out->normal[c * out->ld + n] = normal[c];
-            out->position[c * out->ld + n] = a->position[c * a->ld + i] + place[c];
+        for (uint32_t c = 0; c < d; ++c) { /* those that stand move together: n <= i */
+            out->normal[c * out->ld + n] = out->normal[c * out->ld + i];
+            out->position[c * out->ld + n] = out->position[c * out->ld + i];
         }
-        out->gap[n] = gap;
-        if (out->distance) out->distance[n] = distance_to(a->stiffness >= b->stiffness ? a : b, i, normal);
-        out->area[n] = area;
+        out->gap[n] = out->gap[i];
+        if (out->distance) out->distance[n] = out->distance[i];
+        out->area[n] = out->area[i];
         if (measure) mv->areas.node[n] = (uint32_t)i;
         out->key[n] = a->key[i];
         ++n;
