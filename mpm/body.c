@@ -414,7 +414,6 @@ ab_status mpm_create_in(const ab_scene *scene, size_t index, const ab_mesh *mesh
     if (status == AB_OK) mpm_affine_start(body, fill);
     const size_t busy = 1 + body->points / POINTS_PER_THREAD; /* small bodies are slower on many threads; the answer is the same */
     if ((size_t)body->threads > busy) body->threads = (int)busy;
-    if (status == AB_OK && !mpm_share_create(body)) status = ab_report_failure(report, "no memory for body '%s'", spec->name);
     if (status == AB_OK) status = mpm_material_start(body, fill, report);
     if (status == AB_OK) status = mpm_loads_create(body, fill, report);
     if (status == AB_OK) status = mpm_edges_create(body, fill, report);

@@ -173,7 +173,8 @@ struct mpm_body {
     ab_f_bar f_bar;
     int threads;
     struct mpm_share *shares; /* of the tiles, one a thread: see share.h */
-    uint64_t shared_version; /* of the tile list that is shared out; 0: none */
+    size_t share_count;      /* 0: none yet */
+    uint64_t shared_version; /* of the tile list that is shared out */
     ab_side_kind side[AB_SIDES];             /* of the grid, in this stage */
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 

@@ -15,13 +15,16 @@ enum { NODES_COST = 2 }; /* of a tile's nodes, in blocks of points */
 
 static uint64_t run_of(uint32_t first, uint32_t last) { return (uint64_t)first << 32 | last; }
 
-bool mpm_share_create(mpm_body *body) {
-    body->shares = aligned_alloc(128, (size_t)body->threads * sizeof *body->shares);
-    return body->shares != NULL;
-}
-
-static void divide(mpm_body *body) {
+/* Anew after the tiles or the number of threads have changed. False: no memory. */
+static bool divide(mpm_body *body) {
     const size_t threads = (size_t)body->threads;
+    if (body->share_count == threads && body->shared_version == body->version) return true;
+    if (body->share_count != threads) {
+        free(body->shares);
+        body->shares = aligned_alloc(128, threads * sizeof *body->shares);
+        body->share_count = body->shares ? threads : 0;
+        if (!body->shares) return false;
+    }
     size_t whole = 0, done = 0, tile = 0;
     for (size_t k = 0; k < body->tile_count; ++k) whole += body->tiles[k].blocks + NODES_COST;
     for (size_t t = 0; t < threads; ++t) {
@@ -35,6 +38,7 @@ static void divide(mpm_body *body) {
         body->shares[t].last = (uint32_t)tile;
     }
     body->shared_version = body->version;
+    return true;
 }
 
 /* The next tile of a run from its beginning or from its end, or -1. Every second thread goes from the end to the beginning, so that two neighbours meet. */
@@ -51,11 +55,10 @@ static long take(struct mpm_share *share, bool from_end) {
 
 void mpm_each_tile(mpm_body *body, mpm_visit visit, void *context) {
     const size_t threads = (size_t)body->threads;
-    if (threads == 1) {
+    if (threads == 1 || !divide(body)) { /* one thread needs no list */
         for (size_t k = 0; k < body->tile_count; ++k) visit(body, k, context);
         return;
     }
-    if (body->shared_version != body->version) divide(body);
     for (size_t t = 0; t < threads; ++t)
         atomic_store_explicit(&body->shares[t].left, run_of(body->shares[t].first, body->shares[t].last), memory_order_relaxed);
 #pragma omp parallel num_threads((int)threads)

@@ -10,7 +10,6 @@
 
 typedef void (*mpm_visit)(mpm_body *, size_t tile, void *context);
 
-bool mpm_share_create(mpm_body *); /* with body->threads for good; false: no memory */
 /* Every tile once; returns when all are done. */
 void mpm_each_tile(mpm_body *, mpm_visit, void *context);
 void mpm_share_destroy(mpm_body *);
