@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/doubts_springs.h"
+
 static const double HOPELESS =
     3; /* of the limit: limits are of the worst places of points, others bear up to 2.2 of it (tests/stability/dt.yaml) */
 /* What of a body's velocity is rounding grows with flip, by this in a cell and dt over its limit at most, wherever it flies in time with its vibrations: measured over
@@ -173,6 +175,7 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
                               scene->time_cfl, body->name, SPLINE_CFL);
     }
     for (size_t c = 0; c < scene->contact_count; ++c) AB_TRY(doubt_single_point(s, scene->contacts + c, report));
+    AB_TRY(ab_doubt_springs(s, report));
     if (scene->time_dt > HOPELESS * s->critical_dt && scene->watch)
         return ab_report_error(
             report, scene->mark_time,

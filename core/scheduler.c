@@ -190,13 +190,17 @@ static ab_status stop_collapse(const ab_schedule *s, ab_report *report) {
     if (s->fixed_dt > 0.0) return AB_OK;
     const double wanted = s->cfl * s->critical_dt;
     if (wanted >= COLLAPSED * s->cfl * s->first_critical_dt && s->time + wanted > s->time) return AB_OK;
+    const bool springs = !strncmp(s->limit, "springs of boundaries", strlen("springs of boundaries"));
+    const char *remedy =
+        springs ? "The springs of that boundary are too stiff for what they hold: use softer ones (a larger r_b, smaller k_n and k_t), "
+                  "or hold the edge by `fix` or a side of the grid"
+                : "Look at the last frames: something there is torn, crushed or thrown; use a smaller cfl, finer cells or elements, "
+                  "a material that hardens, or for a spring of contact stiffness_of: mass";
     return ab_report_failure(
         report,
         "at %.9g s, after %ld steps, the step has collapsed to %.3g s, from %.3g s at the start, by this limit: %s. The "
-        "run would not end; what was computed until now is in the results. Look at the last frames: something there is "
-        "torn, crushed or thrown; use a smaller cfl, finer cells or elements, a material that hardens, or for a spring "
-        "of contact stiffness_of: mass",
-        s->time, s->number, wanted, s->cfl * s->first_critical_dt, s->limit);
+        "run would not end; what was computed until now is in the results. %s",
+        s->time, s->number, wanted, s->cfl * s->first_critical_dt, s->limit, remedy);
 }
 
 /* What contact finders had to leave undecided. */

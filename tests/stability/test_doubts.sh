@@ -52,6 +52,20 @@ expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
 expect check 0 "warning: bodies.block: at its speed along x, [0-9.e-]+ m/s, it leaves the grid through its right side at about [0-9.e+]+ s, before time.end" crossings 'grid.to=[20, 3]'
 expect check 0 - crossings 'grid.to=[20, 3]' 'grid.sides={right: outflow}'
 expect check 0 - crossings
+# springs against the step: the limits that the run finds are 0.00183 s, 0.00100 s and 1.00e-5 s for stiffness 30, 100 and 1e6
+springs=../verification/springs_slide
+expect plan 0 "contact: where 'block' and 'plane' meet, springs of stiffness 30 x modulus are stable up to a dt of about 0.00223 s, and time.dt is 0.0045 s.*stiffness below 7.3" $springs constants.k=30 'time={end: end, dt: 0.0045}'
+expect check 0 - $springs constants.k=30 'time={end: end, dt: 0.001}'
+expect check 0 - $springs constants.k=3 'time={end: end, dt: 0.0045}'
+expect check 0 "springs_slide.yaml:17:5: warning: contact: .*dt of about 1.22e-05 s, so the step becomes 5.3e.02 times as short; .*stiffness_of: mass" $springs constants.k=1e6
+cavity=../verification/boundary_cavity
+given='boundaries[0]={on: endless, where: {side: right}, boundary: viscoelastic, springs: given, k_n: '
+expect check 0 - $cavity
+expect check 0 - $cavity "${given}1e5}"
+expect check 0 "warning: boundaries\[0\] \(viscoelastic\) on 'endless': springs of 1e.07 Pa/m .* the step becomes 15 times as short; use softer springs" $cavity "${given}1e7}"
+expect check 2 "error: boundaries\[0\] \(viscoelastic\) on 'endless': springs of 1e.16 Pa/m are stable up to a dt of about 3.44e-09 s" $cavity "${given}1e16}"
+expect check 0 "warning: boundaries\[0\] .* and time.dt is 0.0015 s" $cavity "${given}1e5}" 'time={end: 0.1, dt: 0.0015}'
+expect run 1 "springs of boundaries on 'endless'.* The springs of that boundary are too stiff for what they hold: use softer ones" $cavity "${given}1e25}" 'watchdog={stop: false}'
 # one element, a corner of which is pushed through its diagonal: first nearly inside out, then, where that is let go on, turned
 cat >pushed_in.yaml <<'SCENE'
 abut: 1

@@ -80,6 +80,7 @@ kind points 40 0.1
 kind deep 11 0.12
 kind rolling 50 0.05
 kind bar_transfers 40 1
+kind ring 20 0.01 --set constants.cells=24 --set bodies.ring.update=usavg --set expect=[]
 kind vortex 30 0.2
 kind hertz_points 100 0.01
 kind springs_slide 25 0.3

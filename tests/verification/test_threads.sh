@@ -1,6 +1,7 @@
 #!/bin/bash
 # cost: 20
-# The same bits for any number of threads: the incline, shortened, on 1, 2, 3 and 5 threads; a ring with the transfers that have passes of their own.
+# The same bits for any number of threads: the incline, shortened, on 1, 2, 3 and 5 threads; a ring with the transfers that have passes of their own,
+# and with update usavg.
 # test_threads.sh BUILD
 set -eu
 build=${1:?the build folder}
@@ -35,13 +36,13 @@ for threads in (2, 3, 5):
         assert values.tobytes() == other[name].tobytes(), f"{name} differs on {threads} threads"
 print(f"{len(first)} datasets and history.csv are the same on 1, 2, 3 and 5 threads")
 PYTHON
-for transfer in apic '{xpic: 3}'; do
-    for threads in 1 2 5; do
-        "$build/abut" run tests/verification/ring.yaml --quiet -j $threads -o "$scratch/ring$threads" --set bodies.ring.transfer="$transfer" \
+for setting in transfer=apic 'transfer={xpic: 3}' update=usavg; do
+    for threads in 1 2 3 5; do
+        "$build/abut" run tests/verification/ring.yaml --quiet -j $threads -o "$scratch/ring$threads" --set bodies.ring."$setting" \
             --set constants.cells=24 --set time.end=0.01 --set history.every=1 --set expect=[] 2>/dev/null
     done
-    for threads in 2 5; do
-        cmp "$scratch/ring1/history.csv" "$scratch/ring$threads/history.csv" || { echo "transfer $transfer differs on $threads threads" >&2 && exit 1; }
+    for threads in 2 3 5; do
+        cmp "$scratch/ring1/history.csv" "$scratch/ring$threads/history.csv" || { echo "$setting differs on $threads threads" >&2 && exit 1; }
     done
 done
-echo "apic and xpic give the same history.csv on 1, 2 and 5 threads"
+echo "apic, xpic and usavg give the same history.csv on 1, 2, 3 and 5 threads"

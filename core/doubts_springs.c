@@ -1,0 +1,120 @@
+/* doubts_springs.c: what springs will ask of the step. The step loop knows it once bodies have met and a boundary has been asked, by the masses of each node; here it is
+ * estimated with the mass of half a cell or element under a face, rho h A/2: what swings there is no heavier, so a dt above the estimate is above the limit. */
+#include "core/doubts_springs.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double SLOWER = 10;   /* times as many steps: said */
+static const double ENDLESS = 1e3; /* times: a spring that is a support, and no wave will ever come of it */
+
+/* A body as springs see it. Rigid: modulus and density infinite, as nothing of it swings. */
+typedef struct seen {
+    double modulus, density, speed, length; /* Pa, kg/m3, m/s; m, of a cell or an element, by its own stable step */
+} seen;
+
+static seen look(const ab_schedule *s, size_t b) {
+    const ab_domain *domain = s->domains[b];
+    const ab_body_spec *body = s->scene->bodies + b;
+    seen it = {INFINITY, INFINITY, INFINITY, INFINITY};
+    if (!domain->ops->modulus || body->material >= s->scene->material_count || !isfinite(domain->ops->modulus(domain))) return it;
+    const char *limit = "";
+    it.modulus = domain->ops->modulus(domain);
+    it.density = s->scene->materials[body->material].density;
+    it.speed = sqrt(it.modulus / it.density);
+    it.length = !strcmp(body->method, "material-points") ? s->scene->grid_cell : it.speed * domain->ops->critical_dt(s->domains[b], &limit);
+    return it;
+}
+
+/* The setting of that name; NULL where the class has none. */
+static const ab_value *setting(const ab_class *class_, const ab_value *values, const char *name) {
+    for (uint32_t k = 0; k < class_->nparam; ++k)
+        if (!strcmp(class_->param[k].name, name)) return values + k;
+    return NULL;
+}
+
+/* Of the choices "a|b|c", the one that a setting has taken. */
+static bool chosen(const ab_class *class_, const ab_value *values, const char *name, int64_t wanted) {
+    const ab_value *value = setting(class_, values, name);
+    return value && value->integer == wanted;
+}
+
+/* response penalty, stiffness_of modulus: k = stiffness M A/h on the effective mass of both faces. */
+static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
+    enum { OF_MODULUS = 1 };
+    const ab_class *law = &contact->responder->class_;
+    if (strcmp(law->name, "penalty") || !chosen(law, contact->responder_settings, "stiffness_of", OF_MODULUS)) return;
+    const double stiffness = setting(law, contact->responder_settings, "stiffness")->real;
+    double modulus = INFINITY, cell = INFINITY, lighter = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        const seen it = look(s, contact->body[side]);
+        if (!isfinite(it.modulus)) continue;
+        modulus = fmin(modulus, it.modulus);
+        cell = fmin(cell, it.length);
+        lighter += 2.0 / (it.density * it.length); /* 1/(mass of half a cell), per area of face */
+    }
+    if (!(lighter > 0.0) || !(cell > 0.0) || !isfinite(modulus)) return;
+    const double dt = 2.0 * sqrt(cell / (stiffness * modulus * lighter));
+    const char *a = s->scene->bodies[contact->body[0]].name, *b = s->scene->bodies[contact->body[1]].name;
+    if (s->scene->time_dt > dt)
+        ab_report_warning(report, contact->mark,
+                          "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, and "
+                          "time.dt is %.4g s; use a dt below that, cfl, stiffness below %.2g, or stiffness_of: mass, which bears any dt",
+                          a, b, stiffness, dt, s->scene->time_dt, stiffness * pow(dt / s->scene->time_dt, 2));
+    else if (!(s->scene->time_dt > 0.0) && SLOWER * dt < s->critical_dt)
+        ab_report_warning(
+            report, contact->mark,
+            "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, so the "
+            "step becomes %.2g times as short; use a stiffness of up to 3, or stiffness_of: mass, which bears any dt",
+            a, b, stiffness, dt, s->critical_dt / dt);
+}
+
+/* Stiffness per area, Pa/m, of a viscoelastic boundary; 0 for others. */
+static double boundary_stiffness(const ab_boundary_spec *spec, const seen *it) {
+    enum { DEEKS_RANDOLPH, KELLEZI, GIVEN };
+    const ab_class *law = &spec->loaded->class_;
+    if (strcmp(law->name, "viscoelastic")) return 0.0;
+    if (chosen(law, spec->settings, "springs", GIVEN))
+        return fmax(setting(law, spec->settings, "k_n")->real, setting(law, spec->settings, "k_t")->real);
+    const double r_b = setting(law, spec->settings, "r_b")->real;
+    if (chosen(law, spec->settings, "springs", KELLEZI)) return it->modulus / r_b;
+    return it->modulus / (4.0 * r_b); /* G/(2 r_b), and G is at most half of the P-wave modulus */
+}
+
+static ab_status doubt_boundary(const ab_schedule *s, size_t number, ab_report *report) {
+    const ab_boundary_spec *spec = s->scene->boundaries + number;
+    const seen it = look(s, spec->body);
+    if (!isfinite(it.modulus)) return AB_OK;
+    const double stiffness = boundary_stiffness(spec, &it);
+    if (!(stiffness > 0.0)) return AB_OK;
+    const double own = it.length / it.speed, spring = sqrt(2.0 * it.density * it.length / stiffness); /* 2/w, w^2 = k A/(rho h A/2) */
+    const double dt = 1.0 / sqrt(1.0 / (own * own) + 1.0 / (spring * spring)), slower = s->critical_dt / dt;
+    const char *name = s->scene->bodies[spec->body].name;
+    /* shorter for the springs, and not because the body has shorter ones of its own */
+    if (!(spring < own)) return AB_OK;
+    static const char REMEDY[] = "use softer springs (a larger r_b, smaller k_n and k_t), or hold the edge by `fix` or a side of the grid";
+    if (slower > ENDLESS && s->scene->watch)
+        return ab_report_error(
+            report, spec->mark,
+            "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, %.2g times "
+            "as short as the body's; they are a support and no ground beyond: %s. (watchdog: {stop: false} lets it be tried)",
+            number, name, stiffness, dt, slower, REMEDY);
+    if (s->scene->time_dt > dt)
+        ab_report_warning(
+            report, spec->mark,
+            "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, and time.dt is "
+            "%.4g s; use a dt below that, cfl, or %s",
+            number, name, stiffness, dt, s->scene->time_dt, REMEDY + 4);
+    else if (!(s->scene->time_dt > 0.0) && slower > SLOWER)
+        ab_report_warning(report, spec->mark,
+                          "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, so the step "
+                          "becomes %.2g times as short; %s",
+                          number, name, stiffness, dt, slower, REMEDY);
+    return AB_OK;
+}
+
+ab_status ab_doubt_springs(const ab_schedule *s, ab_report *report) {
+    for (size_t c = 0; c < s->scene->contact_count; ++c) doubt_contact(s, s->scene->contacts + c, report);
+    for (size_t k = 0; k < s->scene->boundary_count; ++k) AB_TRY(doubt_boundary(s, k, report));
+    return AB_OK;
+}

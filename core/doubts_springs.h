@@ -1,0 +1,11 @@
+/* doubts_springs.h: springs of contact and of boundaries against the step, before anything has met: part of ab_doubts. */
+#ifndef AB_DOUBTS_SPRINGS_H
+#define AB_DOUBTS_SPRINGS_H
+
+#include "core/scheduler.h"
+
+/* With bodies and plugins made and the first step chosen. Warns of springs that a fixed dt is too long for, or that make the step by cfl much shorter; AB_BAD_INPUT where
+ * springs of a boundary are so stiff that no run would end. */
+ab_status ab_doubt_springs(const ab_schedule *schedule, ab_report *report);
+
+#endif
