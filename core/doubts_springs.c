@@ -1,5 +1,6 @@
 /* doubts_springs.c: what springs will ask of the step. The step loop knows it once bodies have met and a boundary has been asked, by the masses of each node; here it is
- * estimated with the mass of half a cell or element under a face, rho h A/2: what swings there is no heavier, so a dt above the estimate is above the limit. */
+ * estimated with the mass of half a cell or element under a face, rho h A/2. Of penalty springs the limit is up to a fifth below the estimate; of boundaries' springs it
+ * may be above it by half, where elements share the spring out over more than their outermost nodes: so these are refused by a wide margin only. */
 #include "core/doubts_springs.h"
 
 #include <math.h>
