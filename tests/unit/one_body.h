@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "mpm/body.h"
+#include "whole_scene.h"
 
 typedef struct one_body {
     ab_report *report;
@@ -39,17 +40,8 @@ static inline void say_all(const ab_report *report) {
 
 /* As far as it goes: what is said is in the report. The domain is NULL unless the status is AB_OK. */
 static inline ab_status one_body_attempt(one_body *one, const char *text, int threads) {
-    char path[] = "/tmp/abut-one-XXXXXX", plugins[4096];
-    const int handle = mkstemp(path);
-    assert_true(handle >= 0);
-    assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
-    close(handle);
     one->report = ab_report_create();
-    const char *build = getenv("ABUT_BUILD");
-    snprintf(plugins, sizeof plugins, "%s/plugins", build ? build : "../..");
-    must(one, ab_registry_create(plugins, &one->registry, one->report));
-    must(one, ab_scene_read(path, NULL, 0, one->registry, &one->scene, one->report));
-    unlink(path);
+    must(one, whole_scene_read(text, &one->registry, &one->scene, one->report));
     const ab_status status = mpm_create(one->scene, 0, threads, &one->domain, one->report);
     one->mpm = (mpm_body *)one->domain;
     one->step.dt = one->scene->time_dt;

@@ -8,12 +8,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "fem/body.h"
 #include "fem/domain.h"
+#include "whole_scene.h"
 
 static const char *const TYPES[] = {"q4", "q4r", "q6", "q8", "q8r"};
 enum { TYPE_COUNT = 5 };
@@ -29,7 +28,7 @@ typedef struct one {
 
 /* A skew patch of 6 x 4 elements beside a block of points, with a contact on shared nodes. */
 static ab_status attempt(one *o, const char *type, const char *material, const char *more, const char *sections) {
-    char text[4000], path[] = "/tmp/abut-fem-XXXXXX", plugins[4096];
+    char text[4000];
     snprintf(text, sizeof text,
              "abut: 1\nspace: plane-strain\ntime: {end: 1e4, dt: 0.001}\ngrid: {from: [-3, -2], to: [9, 8], cell: 0.4}\n"
              "materials: {m: {%s, density: 2}}\n"
@@ -40,18 +39,11 @@ static ab_status attempt(one *o, const char *type, const char *material, const c
              "  p: {method: material-points, material: m, shape: {box: [[5, 0], [6, 1]]}}\n"
              "contact: [{bodies: [b, p], algorithm: multi-velocity, response: frictionless}]\n%s",
              material, type, more, sections);
-    const int handle = mkstemp(path);
-    assert_true(handle >= 0);
-    assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
-    close(handle);
-    snprintf(plugins, sizeof plugins, "%s/plugins", getenv("ABUT_BUILD") ? getenv("ABUT_BUILD") : ".");
     o->report = ab_report_create();
-    ab_status status = ab_registry_create(plugins, &o->registry, o->report);
-    if (status == AB_OK) status = ab_scene_read(path, NULL, 0, o->registry, &o->scene, o->report);
+    ab_status status = whole_scene_read(text, &o->registry, &o->scene, o->report);
     if (status == AB_OK) status = fem_create(o->scene, 0, 1, &o->domain, o->report);
     o->body = (fem_body *)o->domain;
     o->step = (ab_step){.dt = 1e-3};
-    unlink(path);
     return status;
 }
 

@@ -9,13 +9,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "core/plugin_host.h"
 #include "fem/body.h"
 #include "fem/domain.h"
+#include "whole_scene.h"
 
 static const double ROUNDING = 1e-13, QUARTER = 0.7853981633974483; /* pi/4 */
 
@@ -29,7 +27,7 @@ typedef struct one {
 } one;
 
 static one create(const char *space, const char *mesh, const char *where) {
-    char text[2000], path[] = "/tmp/abut-edges-XXXXXX", plugins[4096];
+    char text[2000];
     one o = {.report = ab_report_create()};
     snprintf(text, sizeof text,
              "abut: 1\nspace: %s\ntime: {end: 1, dt: 0.001}\n"
@@ -37,18 +35,11 @@ static one create(const char *space, const char *mesh, const char *where) {
              "bodies:\n  b: {method: finite-elements, material: m, mesh: {%s}}\n"
              "boundaries: [{on: b, where: {%s}, boundary: viscous}]\n",
              space, mesh, where);
-    const int handle = mkstemp(path);
-    assert_true(handle >= 0);
-    assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
-    close(handle);
-    snprintf(plugins, sizeof plugins, "%s/plugins", getenv("ABUT_BUILD") ? getenv("ABUT_BUILD") : "../..");
-    assert_int_equal(ab_registry_create(plugins, &o.registry, o.report), AB_OK);
-    const ab_status read = ab_scene_read(path, NULL, 0, o.registry, &o.scene, o.report);
+    const ab_status read = whole_scene_read(text, &o.registry, &o.scene, o.report);
     for (size_t i = 0; ab_report_text(o.report, i); i++) print_error("%s\n", ab_report_text(o.report, i));
     assert_int_equal(read, AB_OK);
     assert_int_equal(fem_create(o.scene, 0, 1, &o.domain, o.report), AB_OK);
     o.body = (fem_body *)o.domain;
-    unlink(path);
     return o;
 }
 

@@ -9,13 +9,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "core/plugin_host.h"
 #include "fem/body.h"
 #include "fem/domain.h"
+#include "whole_scene.h"
 
 static const double SHARED = 1.5, WIDE = 24, HIGH = 20; /* cells of 1 m */
 
@@ -28,7 +26,7 @@ typedef struct one {
 } one;
 
 static one create(const char *type, int columns, int rows) {
-    char text[2000], path[] = "/tmp/abut-layer-XXXXXX", plugins[4096];
+    char text[2000];
     one o = {.report = ab_report_create(), .step = {.dt = 1e-3}};
     snprintf(text, sizeof text,
              "abut: 1\nspace: plane-strain\ntime: {end: 1, dt: 0.001}\ngrid: {from: [-8, -8], to: [40, 40], cell: 1}\n"
@@ -38,15 +36,8 @@ static one create(const char *type, int columns, int rows) {
              "  p: {method: material-points, material: m, shape: {box: [[0, 20], [4, 22]]}}\n"
              "contact: [{bodies: [b, p], algorithm: multi-velocity, response: frictionless}]\n",
              columns, rows, type);
-    const int handle = mkstemp(path);
-    assert_true(handle >= 0);
-    assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
-    close(handle);
-    snprintf(plugins, sizeof plugins, "%s/plugins", getenv("ABUT_BUILD") ? getenv("ABUT_BUILD") : "../..");
-    assert_int_equal(ab_registry_create(plugins, &o.registry, o.report), AB_OK);
-    assert_int_equal(ab_scene_read(path, NULL, 0, o.registry, &o.scene, o.report), AB_OK);
+    assert_int_equal(whole_scene_read(text, &o.registry, &o.scene, o.report), AB_OK);
     assert_int_equal(fem_create(o.scene, 0, 1, &o.domain, o.report), AB_OK);
-    unlink(path);
     return o;
 }
 

@@ -8,12 +8,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "fem/body.h"
 #include "fem/rigid.h"
+#include "whole_scene.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -28,22 +27,14 @@ typedef struct one {
 
 /* Scene of one body `b`; its section behind "method: rigid, " and whole other sections. */
 static ab_status read_scene(one *o, const char *body, const char *more) {
-    char text[4000], path[] = "/tmp/abut-rigid-XXXXXX", plugins[4096];
+    char text[4000];
     snprintf(text, sizeof text,
              "abut: 1\nspace: plane-strain\ntime: {end: 1e4, dt: 0.001}\n"
              "materials: {m: {model: linear-elastic, E: 1000, nu: 0.3, density: 2}}\n"
              "bodies: {b: {method: rigid, %s}}\n%s",
              body, more);
-    const int handle = mkstemp(path);
-    assert_true(handle >= 0);
-    assert_int_equal(write(handle, text, strlen(text)), (ssize_t)strlen(text));
-    close(handle);
     o->report = ab_report_create();
-    const char *build = getenv("ABUT_BUILD");
-    snprintf(plugins, sizeof plugins, "%s/plugins", build ? build : "../..");
-    assert_int_equal(ab_registry_create(plugins, &o->registry, o->report), AB_OK);
-    ab_status status = ab_scene_read(path, NULL, 0, o->registry, &o->scene, o->report);
-    unlink(path);
+    ab_status status = whole_scene_read(text, &o->registry, &o->scene, o->report);
     if (status == AB_OK) status = rigid_create(o->scene, 0, 1, &o->domain, o->report);
     o->body = (rigid_body *)o->domain;
     o->step.dt = 0.001;
