@@ -44,7 +44,7 @@ static void take_ways(ab_scene_reader *r, const ab_node *const *v, const char *w
     if (boundary->nodes && !points)
         ab_report_error(r->base.report, v[BOUNDARY_AT]->mark, "%s.at: nodes is a choice for material points; on '%s' leave it out", where,
                         body->name);
-    if (boundary->nodes && points && strncmp(body->basis, "bspline", 7) == 0)
+    if (boundary->nodes && points && body->basis != NULL && strncmp(body->basis, "bspline", 7) == 0)
         ab_report_error(r->base.report, v[BOUNDARY_AT]->mark,
                         "%s.at: nodes is not there yet with basis %s, whose outermost nodes go by others; use at: points, or basis gimp, "
                         "linear or cpdi",
@@ -66,11 +66,13 @@ static void take_ways(ab_scene_reader *r, const ab_node *const *v, const char *w
 static void take_boundary(ab_scene_reader *r, const ab_node *node, const char *where, ab_boundary_spec *boundary) {
     const ab_node *v[BOUNDARY_KEYS];
     char path[AB_WHERE];
+    int body = -1;
     boundary->mark = node->mark;
     if (!ab_section_open(&r->base, &ab_section_boundary, node, where, v)) return;
     if (v[BOUNDARY_ON] != NULL) {
         const char *name = ab_scene_word(r, v[BOUNDARY_ON], ab_where_join(path, where, "on"), "the name of a body");
-        const int body = name == NULL ? -1 : ab_scene_body_named(r, name, v[BOUNDARY_ON]->mark, path);
+        body = name == NULL ? -1 : ab_scene_body_named(r, name, v[BOUNDARY_ON]->mark, path);
+        if (body >= 0 && r->scene->bodies[body].method == NULL) body = -1; /* its mistakes are told with the body */
         if (body >= 0) boundary->body = (size_t)body;
         if (body >= 0 && strcmp(r->scene->bodies[body].method, "rigid") == 0)
             ab_report_error(
@@ -80,7 +82,7 @@ static void take_boundary(ab_scene_reader *r, const ab_node *node, const char *w
     }
     if (v[BOUNDARY_WHERE] != NULL) ab_scene_take_where(r, v[BOUNDARY_WHERE], ab_where_join(path, where, "where"), &boundary->where);
     if (v[BOUNDARY_STAGES] != NULL) boundary->absent = ab_scene_take_absent(r, v[BOUNDARY_STAGES], ab_where_join(path, where, "stages"));
-    if (take_plugin(r, &ab_section_boundary, node, v[BOUNDARY_PLUGIN], where, boundary)) take_ways(r, v, where, boundary);
+    if (take_plugin(r, &ab_section_boundary, node, v[BOUNDARY_PLUGIN], where, boundary) && body >= 0) take_ways(r, v, where, boundary);
 }
 
 /* A side of the grid that has a boundary plugin: on every body of points that has some of its outline there. */
