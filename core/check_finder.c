@@ -244,6 +244,13 @@ static int probing_create(const ab_host *host, const ab_value *settings, void **
     return code != 0 || !now.look ? code : now.guard.class_.create(host, now.settings, &now.twin);
 }
 
+/* The twin has the same host, which goes with the contact. */
+static void probing_destroy(void *self) {
+    if (now.twin) now.guard.class_.destroy(now.twin);
+    now.twin = NULL;
+    now.guard.class_.destroy(self);
+}
+
 static ab_status run_scene(const ab_check *check, const char *folder, ab_report *report) {
     char path[4200];
     snprintf(path, sizeof path, "%s/scene.yaml", folder);
@@ -281,6 +288,7 @@ static void keep(ab_check *check, ab_promise promise, void (*look)(void *, const
         ab_guard_class(check->loaded, &now.guard);
         now.face = now.guard;
         now.face.class_.create = probing_create;
+        now.face.class_.destroy = probing_destroy;
         now.face.contact.find = probing_find;
         ab_check_trying(check, "find in a small run: %s", ab_check_words(check, now.settings, words, sizeof words));
         ab_report *report = ab_report_create();
@@ -293,7 +301,6 @@ static void keep(ab_check *check, ab_promise promise, void (*look)(void *, const
         } else if (v == 0 && promise == AB_PROMISE_CRASH && now.points == 0 && now.broken == 0)
             ab_check_fail(check, "it found no contact point between a block and another that it runs into (%zu calls)", now.calls);
         ab_report_destroy(report);
-        if (now.twin) now.guard.class_.destroy(now.twin);
     }
 }
 
