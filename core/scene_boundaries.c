@@ -50,6 +50,11 @@ static void take_ways(ab_scene_reader *r, const ab_node *const *v, const char *w
                         "linear or cpdi",
                         where, body->basis);
     const uint32_t gives = boundary->loaded->class_.gives;
+    if (boundary->nodes && points && strcmp(body->basis, "gimp") == 0 && (gives & AB_GIVE_STIFFNESS))
+        ab_report_error(r->base.report, v[BOUNDARY_AT]->mark,
+                        "%s.at: springs of '%s' at nodes stand on nodes with next to no mass once the outline of a gimp body moves through "
+                        "cells, and the stable step goes to nothing; use at: points, or basis linear",
+                        where, boundary->loaded->class_.name);
     boundary->hold = points && (gives & AB_GIVE_DAMPING) && (body->initial.kind != AB_INITIAL_NONE || (boundary->absent & 1u));
     if (v[BOUNDARY_HOLD] == NULL || !ab_read_flag(&r->base, &key[BOUNDARY_HOLD], v[BOUNDARY_HOLD], where, &boundary->hold) ||
         !boundary->hold)

@@ -91,7 +91,12 @@ static bool take_number(ab_scene_reader *r, int key, const ab_node *node, const 
     const char *what = ab_section_monitor.keys[key].name;
     if (!ab_read_integer(&r->base, &ab_section_monitor.keys[key], node, where, number)) return false;
     if (*number >= 0 && *number < (long)count) return true;
-    if (count == 0)
+    if (key == MONITOR_BOUNDARY && r->scene->boundary_count > count)
+        ab_report_error(r->base.report, node->mark,
+                        "%s.boundary: there is no boundary %ld in the list under boundaries, which has %zu; those under grid.sides have no "
+                        "number: write the side there instead, {on: BODY, where: {side: SIDE}, boundary: NAME}",
+                        where, *number, count);
+    else if (count == 0)
         ab_report_error(r->base.report, node->mark, "%s.%s: there is no %s %ld, the scene has none", where, what, what, *number);
     else
         ab_report_error(r->base.report, node->mark, "%s.%s: there is no %s %ld; they count from 0 to %zu", where, what, what, *number,
