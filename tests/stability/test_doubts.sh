@@ -66,6 +66,13 @@ expect check 0 "warning: boundaries\[0\] \(viscoelastic\) on 'endless': springs 
 expect check 2 "error: boundaries\[0\] \(viscoelastic\) on 'endless': springs of 1e.16 Pa/m are stable up to a dt of about 3.44e-09 s" $cavity "${given}1e16}"
 expect check 0 "warning: boundaries\[0\] .* and time.dt is 0.0015 s" $cavity "${given}1e5}" 'time={end: 0.1, dt: 0.0015}'
 expect run 1 "springs of boundaries on 'endless'.* The springs of that boundary are too stiff for what they hold: use softer ones" $cavity "${given}1e25}" 'watchdog={stop: false}'
+# springs at nodes of a gimp body, and a monitor that asks by number for a boundary that stands under grid.sides
+side='where: {side: bottom}, boundary: viscoelastic, springs: given, k_n: 10'
+expect check 2 "error: boundaries\[0\].at: springs of 'viscoelastic' at nodes .* use at: points, or basis linear" $nodes bodies.block.basis=gimp "boundaries=[{on: block, $side, at: nodes}]"
+expect check 0 - $nodes bodies.block.basis=linear "boundaries=[{on: block, $side, at: nodes}]"
+expect check 0 - $nodes bodies.block.basis=gimp "boundaries=[{on: block, $side, at: points}]"
+expect check 2 'error: monitors\[0\].boundary: .* those under grid.sides have no number: write the side there instead' crossings \
+    'grid.sides={left: {boundary: viscous}}' 'bodies.block.shape={box: [["-2*h", 0], [0, "2*h"]]}' 'monitors=[{name: f, boundary: 0, value: force.x}]' 'expect=[]'
 # one element, a corner of which is pushed through its diagonal: first nearly inside out, then, where that is let go on, turned
 cat >pushed_in.yaml <<'SCENE'
 abut: 1
