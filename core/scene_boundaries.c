@@ -50,7 +50,7 @@ static void take_ways(ab_scene_reader *r, const ab_node *const *v, const char *w
                         "linear or cpdi",
                         where, body->basis);
     const uint32_t gives = boundary->loaded->class_.gives;
-    if (boundary->nodes && points && strcmp(body->basis, "gimp") == 0 && (gives & AB_GIVE_STIFFNESS))
+    if (boundary->nodes && points && body->basis != NULL && strcmp(body->basis, "gimp") == 0 && (gives & AB_GIVE_STIFFNESS))
         ab_report_error(r->base.report, v[BOUNDARY_AT]->mark,
                         "%s.at: springs of '%s' at nodes stand on nodes with next to no mass once the outline of a gimp body moves through "
                         "cells, and the stable step goes to nothing; use at: points, or basis linear",
