@@ -49,6 +49,9 @@ ab_status ab_trade_plan(ab_trade *trade, ab_report *report);
 void ab_trade_clear(ab_trade *trade);
 /* Runs what is not there yet or had failed, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
 ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *registry, ab_report *report);
+/* The run to be made now, of the `ab_trade` that `owner` is: the cheapest that waits, that is, the lowest on all ladders together; of a walk, among those it wants. NULL: none,
+ * or none before another has ended. */
+ab_child *ab_trade_next(void *owner);
 /* What errors are measured of; before any run. */
 ab_status ab_trade_choose_judges(ab_trade *trade, const ab_scene *scene, ab_report *report);
 /* Errors, remainders and the front from what the runs wrote; may be called again when there are more. */

@@ -75,8 +75,7 @@ static void skip_dearer(ab_trade *trade, const ab_trial *slow) {
     }
 }
 
-/* The cheapest that waits: the lowest on all ladders together. */
-static ab_child *next(void *owner) {
+ab_child *ab_trade_next(void *owner) {
     ab_trade *trade = owner;
     if (trade->spec->path && trade->stale) {
         ab_trade_judge(trade, trade->report);
@@ -117,7 +116,7 @@ ab_status ab_trade_run(ab_trade *trade, const ab_scene *scene, ab_registry *regi
     trade->report = report;
     if (trade->spec->path) AB_TRY(ab_trade_walk_begin(trade, report));
     trade->runs.owner = trade;
-    trade->runs.next = next;
+    trade->runs.next = ab_trade_next;
     trade->runs.ended = ended;
     trade->runs.count = count_ended;
     trade->runs.limit = trade->spec->limit;

@@ -39,32 +39,17 @@ sed 's/v0: 1e-4/v0: 2e-4/' "$bar" >other.yaml
 must "runs of another scene are" bash -c "'$build/abut' trade other.yaml --vary constants.cells=12 -o bar 2>&1 | grep -q '1 of 1.*done, '"
 
 ladders=(--vary constants.cells=12,25,50 --vary bodies.bar.basis=linear,gimp,bspline2,bspline3 --vary bodies.bar.transfer='flip,{flip: 0.9},pic,{xpic: 2}' --set 'constants.end=2*2*pi/w')
-# Costs are times, and a busy machine lengthens some of them: what it disturbed is measured anew, up to four times.
-path() {
-    rm -rf walk
-    must "all combinations" says 0 "cheapest within" "$build/abut" trade "$bar" "${ladders[@]}" -o walk --seconds 0.1
-    cp walk/trade.json all.json
-    must "a path through them" says 0 "of 48 combinations were run" "$build/abut" trade "$bar" "${ladders[@]}" -o walk --path --seconds 0.1
-    must "ends where all of them end, with fewer runs" python3 - <<'PYTHON'
+# Which runs a path makes goes by their times: tests/unit/test_trade_path.c holds that with given ones. Here: that it is made, and of runs that all stand in its table.
+must "a path through them" says 0 "of 48 combinations were run" "$build/abut" trade "$bar" "${ladders[@]}" -o walk --path --seconds 0.1
+must "from the scene's own settings on" python3 - <<'PYTHON'
 import json
-every, path = json.load(open("all.json")), json.load(open("walk/trade.json"))
-runs = [[r for r in t["runs"] if r["outcome"] == "done"] for t in (every, path)]
-cost = [sum(r["cpu_seconds"] for r in side) for side in runs]
-print(f"        {len(runs[1])} of {len(runs[0])} runs, {cost[1]:.2f} of {cost[0]:.2f} s")
-assert path["search"] == "path" and len(runs[0]) == 48 and len(runs[1]) <= 36 and cost[1] < 0.85 * cost[0]
-for end in ("cheapest", "most_accurate"): # the same run, or one that no clock tells from it
-    a, b = (next(r for r in t["runs"] if r["settings"] == t[end]) for t in (every, path))
-    assert a == b or (b["error"] <= 1.1 * a["error"] and b["cpu_seconds"] <= 1.1 * a["cpu_seconds"]), (end, a, b)
+path = json.load(open("walk/trade.json"))
+done = [r for r in path["runs"] if r["outcome"] == "done"]
+assert path["search"] == "path" and len(path["runs"]) == 48 and 5 <= len(done), len(done)
+assert any(r["settings"]["constants.cells"] == "50" and r["settings"]["bodies.bar.transfer"] == "flip" for r in done) # bar_1.yaml's own is 50 cells, flip
+settings = [r["settings"] for r in done]
+assert path["cheapest"] in settings and (path["most_accurate"] is None or path["most_accurate"] in settings)
 PYTHON
-    must "what was given up is said" grep -q "transfer=pic was beaten, or broke off, wherever it was tried" said
-}
-before=$missed
-for turn in 1 2 3 4; do
-    missed=$before
-    path >walked 2>&1
-    [ "$missed" -eq "$before" ] && break
-done
-cat walked
 must "threads are a ladder" says 0 "cheapest within" "$build/abut" trade "$bar" --vary threads=1,2 --set constants.cells=25 --set trade.cost=wall -o threads --tolerance 1 --write threads.yaml
 must "and are used" python3 -c "
 import json
