@@ -62,8 +62,8 @@ rects = xml.dom.minidom.parse("map/map.svg").getElementsByTagName("rect")
 coloured = [r for r in rects if r.getElementsByTagName("title")]
 assert len(coloured) == 9 and {r.getAttribute("fill") for r in coloured} == {"#4c9f50", "#c0392b", "#9aa0ad"} | ({"#eebc3a"} if "wrong" in verdicts.values() else set())
 PYTHON
-must "the limit of time" says 0 "over the limit of 0.3 s" "$build/abut" extremes bar.yaml --vary constants.cells=10,2000 --limit 0.3 -o limit -q
-must "a signal leaves what is done" says 124 "1 of 2 runs have no verdict" timeout -s INT 2 "$build/abut" extremes bar.yaml --vary constants.cells=10,3000 -o signal
+must "the limit of time" says 0 "over the limit of 2 s" "$build/abut" extremes bar.yaml --vary constants.cells=10,2000 --limit 2 -o limit -q
+must "a signal leaves what is done" says 124 "1 of 2 runs have no verdict" timeout -s INT 4 "$build/abut" extremes bar.yaml --vary constants.cells=10,3000 -o signal
 must "and it goes on from there" says 0 "done before" "$build/abut" extremes bar.yaml --vary constants.cells=10,20 -o signal
 must "an unknown constant" says 2 "did you mean 'part'" "$build/abut" extremes bar.yaml --vary constants.prat=1..2 -o never
 must "an unknown key" says 2 "wrong.yaml:17:[0-9]+: error: unknown key 'form' in extremes.vary\[1\]; did you mean 'from'" bash -c "sed 's/nu, from/nu, form/' bar.yaml >wrong.yaml; '$build/abut' extremes wrong.yaml -o never"

@@ -16,8 +16,8 @@ bodies: {block: {method: material-points, material: rubber, shape: {box: [[1, 1]
 history: {every: 1000}
 SCENE
 for columns in 40 64 80 140; do
-    # stopped by one signal after a second (timeout would send another to its group, and a second one ends a run at once): a bar is drawn ten times a second
-    script -qec "stty cols $columns rows 24; timeout --foreground -s INT 1 '$build/abut' run scene.yaml -j 1 -o out >table.txt" /dev/null </dev/null >drawn.txt || true
+    # stopped by one signal after two seconds (timeout would send another to its group, and a second one ends a run at once): a bar is drawn ten times a second
+    script -qec "stty cols $columns rows 24; timeout --foreground -s INT 2 '$build/abut' run scene.yaml -j 1 -o out >table.txt" /dev/null </dev/null >drawn.txt || true
     python3 - $columns <<'PYTHON'
 import re
 import sys
