@@ -2,15 +2,7 @@
 #include <stdlib.h>
 
 #include "contact/contact.h"
-
-static bool grow(void *pointer, size_t *capacity, size_t wanted, size_t size) {
-    if (wanted <= *capacity) return true;
-    void **p = pointer, *more = realloc(*p, 2 * wanted * size);
-    if (!more) return false;
-    *p = more;
-    *capacity = 2 * wanted;
-    return true;
-}
+#include "core/memory.h"
 
 ab_status contact_shared_nodes(contact_pair *pair, ab_report *report) {
     ab_node_tiles a, b;
@@ -24,7 +16,7 @@ ab_status contact_shared_nodes(contact_pair *pair, ab_report *report) {
             else if (a.key[i] > b.key[j])
                 ++j;
             else {
-                if (!grow(&pair->tiles, &pair->tile_capacity, pair->tile_count + 1, sizeof *pair->tiles)) goto no_memory;
+                if (!ab_memory_append(&pair->tiles, &pair->tile_capacity, pair->tile_count + 1, sizeof *pair->tiles)) goto no_memory;
                 pair->tiles[pair->tile_count][0] = (uint32_t)i++;
                 pair->tiles[pair->tile_count++][1] = (uint32_t)j++;
             }
@@ -39,8 +31,8 @@ ab_status contact_shared_nodes(contact_pair *pair, ab_report *report) {
         for (uint32_t n = 0; n < AB_TILE_NODES; ++n) {
             if (!(ma[n * a.stride] > 0.0 && mb[n * b.stride] > 0.0)) continue;
             size_t capacity = pair->node_capacity;
-            if (!grow(&pair->nodes_a, &capacity, pair->node_count + 1, sizeof *pair->nodes_a)) goto no_memory;
-            if (!grow(&pair->nodes_b, &pair->node_capacity, pair->node_count + 1, sizeof *pair->nodes_b)) goto no_memory;
+            if (!ab_memory_append(&pair->nodes_a, &capacity, pair->node_count + 1, sizeof *pair->nodes_a)) goto no_memory;
+            if (!ab_memory_append(&pair->nodes_b, &pair->node_capacity, pair->node_count + 1, sizeof *pair->nodes_b)) goto no_memory;
             pair->nodes_a[pair->node_count] = ta * AB_TILE_NODES + n;
             pair->nodes_b[pair->node_count++] = tb * AB_TILE_NODES + n;
         }

@@ -55,6 +55,19 @@ int ab_memory_grow(void **pointer, size_t *capacity, size_t wanted, size_t size)
     return 1;
 }
 
+bool ab_memory_resize(void *pointer, size_t count, size_t size) {
+    void **p = pointer, *more = count <= SIZE_MAX / 2 / size ? realloc(*p, count * size) : NULL;
+    if (more) *p = more;
+    return more != NULL;
+}
+
+bool ab_memory_append(void *pointer, size_t *capacity, size_t wanted, size_t size) {
+    if (wanted <= *capacity) return true;
+    if (wanted > SIZE_MAX / 4 || !ab_memory_resize(pointer, 2 * wanted, size)) return false;
+    *capacity = 2 * wanted;
+    return true;
+}
+
 size_t ab_memory_peak(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0;

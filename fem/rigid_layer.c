@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "fem/rigid.h"
 
 static const double PI = 3.14159265358979323846;
@@ -16,22 +17,13 @@ void rigid_layer_clear(rigid_layer *l) {
     *l = (rigid_layer){0};
 }
 
-static bool grow(void *pointer, size_t *capacity, size_t wanted, size_t size) {
-    if (wanted <= *capacity) return true;
-    void **p = pointer, *more = realloc(*p, 2 * wanted * size);
-    if (!more) return false;
-    *p = more;
-    *capacity = 2 * wanted;
-    return true;
-}
-
 /* place: from the body's centre. */
 static bool add(rigid_layer *l, double x, double y, double volume, const double extent[3]) {
     if (l->count == l->capacity) {
         size_t capacity[3] = {l->capacity, l->capacity, l->capacity};
-        if (!grow(&l->place, capacity, l->count + 64, sizeof *l->place) ||
-            !grow(&l->volume, capacity + 1, l->count + 64, sizeof *l->volume) ||
-            !grow(&l->extent, capacity + 2, l->count + 64, sizeof *l->extent))
+        if (!ab_memory_append(&l->place, capacity, l->count + 64, sizeof *l->place) ||
+            !ab_memory_append(&l->volume, capacity + 1, l->count + 64, sizeof *l->volume) ||
+            !ab_memory_append(&l->extent, capacity + 2, l->count + 64, sizeof *l->extent))
             return false;
         l->capacity = capacity[0];
     }
@@ -108,8 +100,8 @@ static long cell_i(uint64_t key) { return (long)(uint32_t)key - (1 << 30); }
 static long cell_j(uint64_t key) { return (long)(uint32_t)(key >> 32) - (1 << 30); }
 
 static bool add_edge(lattice *t, const double from[2], const double to[2], uint32_t loop) {
-    if (!grow(&t->edges, &t->edge_capacity, t->edge_count + 1, sizeof *t->edges) ||
-        !grow(&t->loop, &t->loop_capacity, t->edge_count + 1, sizeof *t->loop))
+    if (!ab_memory_append(&t->edges, &t->edge_capacity, t->edge_count + 1, sizeof *t->edges) ||
+        !ab_memory_append(&t->loop, &t->loop_capacity, t->edge_count + 1, sizeof *t->loop))
         return false;
     edge *e = t->edges + t->edge_count;
     e->from[0] = t->cosine * from[0] + t->sine * from[1];
@@ -190,10 +182,10 @@ static bool mark(lattice *t, const double from[2], const double to[2], double ma
     for (long j = first[1]; j <= last[1]; ++j)
         for (long i = first[0]; i <= last[0]; ++i) {
             if (cuts) {
-                if (!grow(&t->cuts, &t->cut_capacity, t->cut_count + 1, sizeof *t->cuts)) return false;
+                if (!ab_memory_append(&t->cuts, &t->cut_capacity, t->cut_count + 1, sizeof *t->cuts)) return false;
                 t->cuts[t->cut_count++] = (cut){cell_key(i, j), number};
             } else {
-                if (!grow(&t->cell, &t->cell_capacity, t->cell_count + 1, sizeof *t->cell)) return false;
+                if (!ab_memory_append(&t->cell, &t->cell_capacity, t->cell_count + 1, sizeof *t->cell)) return false;
                 t->cell[t->cell_count++] = cell_key(i, j);
             }
         }
@@ -242,7 +234,7 @@ static bool inside(const lattice *t, const double x[2]) {
 
 /* Cuts a polygon off where sign*x[c] > limit (Sutherland, Hodgman 1974). Where it falls apart, edges along the limit join the parts and add nothing to moments. */
 static bool clip(lattice *t, size_t *count, int c, double sign, double limit) {
-    if (!grow(&t->spare, &t->spare_capacity, 2 * *count + 2, sizeof *t->spare)) return false;
+    if (!ab_memory_append(&t->spare, &t->spare_capacity, 2 * *count + 2, sizeof *t->spare)) return false;
     size_t n = 0;
     for (size_t k = 0; k < *count; ++k) {
         const double *a = t->piece[k], *b = t->piece[(k + 1) % *count];
@@ -275,7 +267,7 @@ static bool cell_moments(lattice *t, const double middle[2], moments *m) {
     for (size_t first = 0; first < t->edge_count;) {
         size_t count = 0, e = first;
         for (; e < t->edge_count && t->loop[e] == t->loop[first]; ++e, ++count) {
-            if (!grow(&t->piece, &t->piece_capacity, count + 1, sizeof *t->piece)) return false;
+            if (!ab_memory_append(&t->piece, &t->piece_capacity, count + 1, sizeof *t->piece)) return false;
             for (int c = 0; c < 2; ++c) t->piece[count][c] = t->edges[e].from[c] - middle[c];
         }
         first = e;

@@ -58,9 +58,8 @@ void fem_trace_destroy(fem_trace *t) {
     if (!t) return;
     free(t->key), free(t->wanted), free(t->tiles), free(t->mass), free(t->patch), free(t->cell_start);
     free(t->cell), free(t->slot), free(t->order);
-    free(t->position), free(t->node_mass), free(t->mass_gradient), free(t->area_vector), free(t->stencil_weight), free(t->near_position);
-    free(t->near_extent), free(t->near_start), free(t->stencil_start), free(t->place), free(t->stencil_dof), free(t->node_key);
-    free(t->density_gradient), free(t);
+    ab_node_list_clear(&t->list);
+    free(t->place), free(t);
 }
 
 /* ---- tiles ---------------------------------------------------------------------------------------------------------------- */
@@ -119,7 +118,7 @@ static bool want(fem_trace *t, uint64_t key, uint64_t *last) {
     *last = key;
     if (t->wanted_count == t->key_capacity) {
         const size_t more = 2 * t->key_capacity + 256;
-        if (!fem_trace_grow(&t->wanted, more, sizeof *t->wanted)) return false;
+        if (!ab_memory_resize(&t->wanted, more, sizeof *t->wanted)) return false;
         t->key_capacity = more;
     }
     t->wanted[t->wanted_count++] = key;
@@ -152,10 +151,10 @@ static bool list_tiles(fem_trace *t) {
         if (unique == 0 || t->wanted[k] != t->wanted[unique - 1]) t->wanted[unique++] = t->wanted[k];
     if (unique > t->tile_capacity || !t->cell_start) {
         const size_t n = unique + unique / 2 + 16;
-        if (!fem_trace_grow(&t->key, n, sizeof *t->key) || !fem_trace_grow(&t->tiles, n, sizeof *t->tiles) ||
-            !fem_trace_grow(&t->mass, n * AB_TILE_NODES, sizeof *t->mass) ||
-            !fem_trace_grow(&t->patch, n * PATCH_NODES, sizeof *t->patch) ||
-            !fem_trace_grow(&t->cell_start, n * AB_TILE_NODES + 1, sizeof *t->cell_start))
+        if (!ab_memory_resize(&t->key, n, sizeof *t->key) || !ab_memory_resize(&t->tiles, n, sizeof *t->tiles) ||
+            !ab_memory_resize(&t->mass, n * AB_TILE_NODES, sizeof *t->mass) ||
+            !ab_memory_resize(&t->patch, n * PATCH_NODES, sizeof *t->patch) ||
+            !ab_memory_resize(&t->cell_start, n * AB_TILE_NODES + 1, sizeof *t->cell_start))
             return false;
         t->tile_capacity = n;
     }
@@ -292,8 +291,8 @@ ab_status fem_trace_update(fem_trace *t, const fem_inner *inner, ab_report *repo
     if (moved) {
         if (count > t->point_capacity || !t->cell) {
             const size_t n = count + 16;
-            if (!fem_trace_grow(&t->cell, n, sizeof *t->cell) || !fem_trace_grow(&t->slot, n, sizeof *t->slot) ||
-                !fem_trace_grow(&t->order, n, sizeof *t->order))
+            if (!ab_memory_resize(&t->cell, n, sizeof *t->cell) || !ab_memory_resize(&t->slot, n, sizeof *t->slot) ||
+                !ab_memory_resize(&t->order, n, sizeof *t->order))
                 goto no_memory;
             t->point_capacity = n;
         }

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/memory.h"
+#include "core/node_list.h"
 #include "core/vector.h"
 #include "fem/trace.h"
 
@@ -33,19 +35,9 @@ struct fem_trace {
     uint32_t *slot; /* tile*AB_TILE_NODES + cell in it */
     uint32_t *order;
     /* what a finder was last shown */
-    size_t capacity, near_capacity, stencil_capacity, place_capacity, density_capacity;
-    double *position, *node_mass, *mass_gradient, *area_vector, *stencil_weight, *near_position, *near_extent, *density_gradient;
-    size_t *near_start, *stencil_start, *place; /* place: by dof, where it stands in the stencil of the node at hand */
-    uint32_t *stencil_dof;
-    uint64_t *node_key;
+    ab_node_list list;
+    size_t place_capacity, *place; /* place: by dof, where it stands in the stencil of the node at hand */
 };
-
-static inline bool fem_trace_grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer;
-    void *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
 
 /* Value and slope at u cells from a node of the function of this width. */
 static inline void fem_trace_weigh(const fem_trace *t, double u, double *n, double *slope) {

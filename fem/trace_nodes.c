@@ -32,19 +32,7 @@ static void density_gradient(const fem_trace *t, const fem_inner *inner, uint32_
 }
 
 static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t needs) {
-    if (count + 1 > t->capacity) {
-        const size_t n = (2 * count + 64) & ~(size_t)7;
-        if (!fem_trace_grow(&t->position, 2 * n, sizeof(double)) || !fem_trace_grow(&t->node_mass, n, sizeof(double)) ||
-            !fem_trace_grow(&t->mass_gradient, 2 * n, sizeof(double)) || !fem_trace_grow(&t->area_vector, 2 * n, sizeof(double)) ||
-            !fem_trace_grow(&t->near_start, n, sizeof(size_t)) || !fem_trace_grow(&t->stencil_start, n, sizeof(size_t)) ||
-            !fem_trace_grow(&t->node_key, n, sizeof(uint64_t)))
-            return false;
-        t->capacity = n;
-    }
-    if ((needs & AB_NEED_DENSITY_GRADIENT) && t->capacity > t->density_capacity) {
-        if (!fem_trace_grow(&t->density_gradient, 2 * t->capacity, sizeof(double))) return false;
-        t->density_capacity = t->capacity;
-    }
+    if (!ab_node_list_reserve(&t->list, count, needs)) return false;
     if (!(needs & AB_NEED_NEAR_POINTS)) return true;
     size_t near = 0;
     for (size_t k = 0; k < count; ++k) {
@@ -52,46 +40,34 @@ static bool reserve(fem_trace *t, const uint32_t *nodes, size_t count, uint32_t 
         const int cells = fem_trace_cells_around(t, nodes[k], first, last);
         for (int c = 0; c < cells; ++c) near += last[c] - first[c];
     }
-    if (near > t->near_capacity) {
-        const size_t n = (2 * near + 64) & ~(size_t)7;
-        if (!fem_trace_grow(&t->near_position, 2 * n, sizeof(double)) || !fem_trace_grow(&t->near_extent, 3 * n, sizeof(double)))
-            return false;
-        t->near_capacity = n;
-    }
-    return true;
+    return ab_node_list_reserve_near(&t->list, near);
 }
 
 /* Adds `share` to the weight of a dof in the stencil that begins at `begin` and ends at *end. */
 static bool add_weight(fem_trace *t, size_t begin, size_t *end, uint32_t dof, double share) {
     if (dof >= t->place_capacity) {
         const size_t n = 2 * (size_t)dof + 64;
-        if (!fem_trace_grow(&t->place, n, sizeof *t->place)) return false;
+        if (!ab_memory_resize(&t->place, n, sizeof *t->place)) return false;
         memset(t->place + t->place_capacity, 0, (n - t->place_capacity) * sizeof *t->place);
         t->place_capacity = n;
     }
     const size_t at = t->place[dof];
-    if (at >= begin && at < *end && t->stencil_dof[at] == dof) {
-        t->stencil_weight[at] += share;
+    if (at >= begin && at < *end && t->list.stencil_dof[at] == dof) {
+        t->list.stencil_weight[at] += share;
         return true;
     }
-    if (*end == t->stencil_capacity) {
-        const size_t n = 2 * t->stencil_capacity + 256;
-        if (!fem_trace_grow(&t->stencil_dof, n, sizeof *t->stencil_dof) ||
-            !fem_trace_grow(&t->stencil_weight, n, sizeof *t->stencil_weight))
-            return false;
-        t->stencil_capacity = n;
-    }
+    if (!ab_node_list_reserve_stencil(&t->list, *end + 1)) return false;
     t->place[dof] = *end;
-    t->stencil_dof[*end] = dof;
-    t->stencil_weight[(*end)++] = share;
+    t->list.stencil_dof[*end] = dof;
+    t->list.stencil_weight[(*end)++] = share;
     return true;
 }
 
 /* Sums over the points around node k of the list. *stencil, *near: ends of both lists so far. */
 static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, size_t k, uint32_t needs, size_t *stencil, size_t *near) {
-    const size_t ld = t->capacity, begin = *stencil;
+    const size_t ld = t->list.capacity, begin = *stencil;
     const double *x = inner->position, *y = x + inner->ld;
-    const double at[2] = {t->position[k], t->position[ld + k]};
+    const double at[2] = {t->list.position[k], t->list.position[ld + k]};
     double gradient[2] = {0.0}, area[2] = {0.0}, mass = 0.0;
     uint32_t first[16], last[16];
     const int cells = fem_trace_cells_around(t, node, first, last);
@@ -120,17 +96,17 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
             for (size_t e = inner->start[q]; e < inner->start[q + 1]; ++e)
                 if (!add_weight(t, begin, stencil, inner->dof[e], value * m * inner->weight[e])) return false;
             if (!(needs & AB_NEED_NEAR_POINTS)) continue;
-            t->near_position[*near] = x[q];
-            t->near_position[t->near_capacity + *near] = y[q];
-            for (size_t r = 0; r < 3; ++r) t->near_extent[r * t->near_capacity + *near] = inner->extent[r * inner->ld + q];
+            t->list.near_position[*near] = x[q];
+            t->list.near_position[t->list.near_capacity + *near] = y[q];
+            for (size_t r = 0; r < 3; ++r) t->list.near_extent[r * t->list.near_capacity + *near] = inner->extent[r * inner->ld + q];
             ++*near;
         }
     }
-    for (size_t e = begin; e < *stencil; ++e) t->stencil_weight[e] /= mass;
+    for (size_t e = begin; e < *stencil; ++e) t->list.stencil_weight[e] /= mass;
     if (t->axisymmetric && !(at[0] > 0.0)) gradient[0] = area[0] = 0.0; /* the other side of the axis is alike */
     for (size_t d = 0; d < 2; ++d) {
-        t->mass_gradient[d * ld + k] = gradient[d];
-        t->area_vector[d * ld + k] = area[d];
+        t->list.mass_gradient[d * ld + k] = gradient[d];
+        t->list.area_vector[d * ld + k] = area[d];
     }
     return true;
 }
@@ -138,49 +114,29 @@ static bool look_around(fem_trace *t, const fem_inner *inner, uint32_t node, siz
 ab_status fem_trace_nodes(fem_trace *t, const fem_inner *inner, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace,
                           ab_report *report) {
     if (!reserve(t, nodes, count, needs)) goto no_memory;
-    const size_t ld = t->capacity;
+    const size_t ld = t->list.capacity;
     size_t stencil = 0, near = 0;
     for (size_t k = 0; k < count; ++k) {
         const uint64_t tile_key = t->key[nodes[k] / AB_TILE_NODES];
         const int32_t n = (int32_t)(nodes[k] % AB_TILE_NODES), i = ab_tile_x(tile_key) * AB_TILE + n % AB_TILE,
                       j = ab_tile_y(tile_key) * AB_TILE + n / AB_TILE;
-        t->position[k] = t->h * i;
-        t->position[ld + k] = t->h * j;
-        t->node_mass[k] = t->mass[nodes[k]];
-        t->node_key[k] = ab_tile_key(i, j);
-        t->stencil_start[k] = stencil;
-        t->near_start[k] = near;
+        t->list.position[k] = t->h * i;
+        t->list.position[ld + k] = t->h * j;
+        t->list.mass[k] = t->mass[nodes[k]];
+        t->list.key[k] = ab_tile_key(i, j);
+        t->list.stencil_start[k] = stencil;
+        t->list.near_start[k] = near;
         if (!look_around(t, inner, nodes[k], k, needs, &stencil, &near)) goto no_memory;
         if (needs & AB_NEED_DENSITY_GRADIENT) {
             double slope[2];
-            density_gradient(t, inner, nodes[k], (const double[2]){t->position[k], t->position[ld + k]}, slope);
-            for (size_t d = 0; d < 2; ++d) t->density_gradient[d * ld + k] = slope[d];
+            density_gradient(t, inner, nodes[k], (const double[2]){t->list.position[k], t->list.position[ld + k]}, slope);
+            for (size_t d = 0; d < 2; ++d) t->list.density_gradient[d * ld + k] = slope[d];
         }
     }
-    t->stencil_start[count] = stencil;
-    t->near_start[count] = near;
-    *trace = (ab_trace){
-        .struct_size = sizeof *trace,
-        .dimension = 2,
-        .body = t->body,
-        .stiffness = t->modulus,
-        .cell = t->h,
-        .count = count,
-        .ld = ld,
-        .position = t->position,
-        .stencil_start = t->stencil_start,
-        .stencil_dof = t->stencil_dof,
-        .stencil_weight = t->stencil_weight,
-        .key = t->node_key,
-        .mass = t->node_mass,
-        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL,
-        .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
-        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL,
-        .near_ld = t->near_capacity,
-        .near_position = t->near_position,
-        .near_extent = t->near_extent,
-        .density_gradient = (needs & AB_NEED_DENSITY_GRADIENT) ? t->density_gradient : NULL,
-    };
+    t->list.stencil_start[count] = stencil;
+    t->list.near_start[count] = near;
+    *trace = ab_node_list_show(&t->list, count, needs);
+    trace->body = t->body, trace->stiffness = t->modulus, trace->cell = t->h;
     return AB_OK;
 no_memory:
     return ab_report_failure(report, "body '%s': no memory for %zu nodes in contact", t->body, count);

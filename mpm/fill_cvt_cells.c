@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "mpm/fill_cvt.h"
 
 static const double SHORTEST = 1e-6; /* distances between points: shorter pieces of outline are left to those beside them */
@@ -40,15 +41,6 @@ typedef struct gathering {
     size_t owner_capacity;
 } gathering;
 
-static bool grow(void *list, size_t *capacity, size_t count, size_t size) {
-    if (count <= *capacity) return true;
-    void **p = list, *more = realloc(*p, (2 * count + 64) * size);
-    if (!more) return false;
-    *p = more;
-    *capacity = 2 * count + 64;
-    return true;
-}
-
 static int by_level(const void *a, const void *b) {
     const level *p = a, *q = b;
     if (p->y != q->y) return p->y < q->y ? -1 : 1;
@@ -80,7 +72,7 @@ static bool add_stretch(gathering *g, uint32_t edge, uint32_t owner, const doubl
     const ab_edge *e = &g->cvt->interior.edge[edge];
     const double s = share_of(e, a), t = share_of(e, b);
     if (s == t) return true;
-    if (!grow(&g->stretch, &g->capacity, g->count + 1, sizeof *g->stretch)) return false;
+    if (!ab_memory_append(&g->stretch, &g->capacity, g->count + 1, sizeof *g->stretch)) return false;
     g->stretch[g->count++] = (stretch){edge, owner, fmin(s, t), fmax(s, t)};
     return true;
 }
@@ -161,13 +153,13 @@ static bool gather_cell(gathering *g, uint32_t i) {
     if (w->no_memory) return false;
     g->cell[i] = w->moments;
     ab_voronoi_centroid(&cvt->voronoi, i, w, g->place[i]);
-    if (!grow(&g->owner, &g->owner_capacity, w->count, sizeof *g->owner)) return false;
+    if (!ab_memory_append(&g->owner, &g->owner_capacity, w->count, sizeof *g->owner)) return false;
     for (uint32_t k = 0; k < w->count; k++) {
         const ab_cell_piece *p = &w->piece[k];
         if (p->root == k) g->owner[k] = k == w->home ? i : neighbour_of(w, k, i);
         const uint32_t owner = g->owner[p->root];
         if (p->root != w->home) {
-            if (!grow(&g->gift, &g->gift_capacity, g->gift_count + 1, sizeof *g->gift)) return false;
+            if (!ab_memory_append(&g->gift, &g->gift_capacity, g->gift_count + 1, sizeof *g->gift)) return false;
             g->gift[g->gift_count++] = (gift){i, owner, p->moments};
         }
         if (!add_sides(g, p, cvt->x[i], owner)) return false;

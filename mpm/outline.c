@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "mpm/body.h"
 #include "mpm/outline.h"
 
@@ -80,18 +81,12 @@ ab_status mpm_outline_create(mpm_body *body, const ab_fill *fill, ab_report *rep
     return spacing > 0.0 ? mpm_touching_create(body, fill, report) : AB_OK;
 }
 
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer, *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
-
 static bool reserve(struct mpm_outline *o) {
     const size_t count = o->loops.count;
     if (count <= o->capacity) return true;
     const size_t n = (count + count / 2 + 8) / 8 * 8;
-    if (!grow(&o->position, 2 * n, sizeof(double)) || !grow(&o->start, n + 1, sizeof *o->start) ||
-        !grow(&o->vertex, 3 * n, sizeof *o->vertex) || !grow(&o->beside, 2 * n, sizeof *o->beside))
+    if (!ab_memory_resize(&o->position, 2 * n, sizeof(double)) || !ab_memory_resize(&o->start, n + 1, sizeof *o->start) ||
+        !ab_memory_resize(&o->vertex, 3 * n, sizeof *o->vertex) || !ab_memory_resize(&o->beside, 2 * n, sizeof *o->beside))
         return false;
     o->capacity = o->ld = n;
     return true;
@@ -99,7 +94,7 @@ static bool reserve(struct mpm_outline *o) {
 
 static bool reserve_stencil(struct mpm_outline *o, size_t nodes) {
     if (nodes <= o->room) return true;
-    if (!grow(&o->dof, 2 * nodes, sizeof *o->dof) || !grow(&o->weight, 2 * nodes, sizeof(double))) return false;
+    if (!ab_memory_resize(&o->dof, 2 * nodes, sizeof *o->dof) || !ab_memory_resize(&o->weight, 2 * nodes, sizeof(double))) return false;
     o->room = 2 * nodes;
     return true;
 }

@@ -1,5 +1,6 @@
 /* outline_loops.c: from the pieces of outline that a fill leaves to closed loops of vertices: each piece is followed by the one that begins where it ends; what
  * lies between two corners is then divided evenly. */
+#include "core/memory.h"
 #include "mpm/outline.h"
 
 #include <math.h>
@@ -125,18 +126,12 @@ static void track_loop(const ab_fill *fill, const uint32_t *following, const uin
     } while (k != first);
 }
 
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer, *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
-
 bool mpm_loops_reserve(mpm_loops *loops, size_t count) {
     if (count <= loops->capacity) return true;
     const size_t n = count + count / 2 + 16;
-    if (!grow(&loops->x, 2 * n, sizeof(double)) || !grow(&loops->next, n, sizeof *loops->next) ||
-        !grow(&loops->prior, n, sizeof *loops->prior) || !grow(&loops->corner, n, sizeof *loops->corner) ||
-        !grow(&loops->point, 2 * n, sizeof *loops->point) || !grow(&loops->arm, 4 * n, sizeof(double)))
+    if (!ab_memory_resize(&loops->x, 2 * n, sizeof(double)) || !ab_memory_resize(&loops->next, n, sizeof *loops->next) ||
+        !ab_memory_resize(&loops->prior, n, sizeof *loops->prior) || !ab_memory_resize(&loops->corner, n, sizeof *loops->corner) ||
+        !ab_memory_resize(&loops->point, 2 * n, sizeof *loops->point) || !ab_memory_resize(&loops->arm, 4 * n, sizeof(double)))
         return false;
     loops->capacity = n;
     return true;

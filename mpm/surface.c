@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/memory.h"
 #include "mpm/outline.h"
 
 enum { ROOM = 36 }; /* nodes of a point, at most: with light ones' own those of 6 x 6 */
@@ -25,19 +26,13 @@ void mpm_surface_destroy(struct mpm_surface *s) {
     free(s->stamp), free(s->tiles), free(s);
 }
 
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer, *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
-
 static bool reserve_tiles(mpm_body *body) {
     if (!body->surface) body->surface = calloc(1, sizeof *body->surface);
     struct mpm_surface *s = body->surface;
     if (!s) return false;
     if (body->tile_count <= s->tile_capacity) return true;
     const size_t n = 2 * body->tile_count;
-    if (!grow(&s->stamp, n, sizeof *s->stamp) || !grow(&s->tiles, n, sizeof *s->tiles)) return false;
+    if (!ab_memory_resize(&s->stamp, n, sizeof *s->stamp) || !ab_memory_resize(&s->tiles, n, sizeof *s->tiles)) return false;
     for (size_t k = 0; k < n; ++k) s->stamp[k] = 0;
     s->call = 0;
     s->tile_capacity = n;
@@ -49,9 +44,10 @@ static bool reserve_points(struct mpm_surface *s) {
     const size_t old = s->capacity;
     if (s->count + 8 <= old) return true;
     const size_t n = (2 * s->count + 64) / 8 * 8;
-    if (!grow(&s->position, 2 * n, sizeof(double)) || !grow(&s->extent, 3 * n, sizeof(double)) || !grow(&s->area, n, sizeof(double)) ||
-        !grow(&s->key, n, sizeof *s->key) || !grow(&s->start, n + 1, sizeof *s->start) || !grow(&s->dof, ROOM * n, sizeof *s->dof) ||
-        !grow(&s->weight, ROOM * n, sizeof(double)))
+    if (!ab_memory_resize(&s->position, 2 * n, sizeof(double)) || !ab_memory_resize(&s->extent, 3 * n, sizeof(double)) ||
+        !ab_memory_resize(&s->area, n, sizeof(double)) || !ab_memory_resize(&s->key, n, sizeof *s->key) ||
+        !ab_memory_resize(&s->start, n + 1, sizeof *s->start) || !ab_memory_resize(&s->dof, ROOM * n, sizeof *s->dof) ||
+        !ab_memory_resize(&s->weight, ROOM * n, sizeof(double)))
         return false;
     for (size_t i = s->count; i-- > 0;) s->position[n + i] = s->position[old + i];
     for (size_t row = 2; row > 0; --row)

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "mpm/outline.h"
 
 static const double RADIUS = 2.2; /* of the distance between points: of the neighbourhood that a vertex hangs on */
@@ -59,12 +60,6 @@ size_t mpm_touching_bytes(const struct mpm_touching *t) {
            t->anchors * (sizeof *t->anchor + POINT_NODES * (sizeof *t->value + sizeof *t->node)) +
            t->room_points * (6 * sizeof(double) + sizeof *t->key + sizeof *t->start + sizeof *t->vertex) +
            t->room_stencil * (sizeof *t->dof + sizeof *t->weight);
-}
-
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer, *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
 }
 
 /* ---- what vertices hang on ------------------------------------------------------------------------------------------------------------- */
@@ -119,7 +114,8 @@ static bool neighbours(struct mpm_touching *t, const ab_fill *fill, const bins *
                 if (!(rest > 0.0)) continue;
                 if (*end == t->room) {
                     const size_t more = 2 * t->room + 256;
-                    if (!grow(&t->hangs_on, more, sizeof *t->hangs_on) || !grow(&t->share, more, sizeof *t->share)) return false;
+                    if (!ab_memory_resize(&t->hangs_on, more, sizeof *t->hangs_on) || !ab_memory_resize(&t->share, more, sizeof *t->share))
+                        return false;
                     t->room = more;
                 }
                 t->hangs_on[*end] = p;
@@ -317,14 +313,16 @@ size_t mpm_touching_most_nodes(void) { return MOST_NODES; }
 static bool reserve(struct mpm_touching *t, size_t stencil) {
     if (t->vertices > t->room_points) {
         const size_t n = (t->vertices + 8) / 8 * 8;
-        if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->extent, 3 * n, sizeof(double)) || !grow(&t->area, n, sizeof(double)) ||
-            !grow(&t->key, n, sizeof *t->key) || !grow(&t->start, n + 1, sizeof *t->start) || !grow(&t->vertex, n, sizeof *t->vertex))
+        if (!ab_memory_resize(&t->position, 2 * n, sizeof(double)) || !ab_memory_resize(&t->extent, 3 * n, sizeof(double)) ||
+            !ab_memory_resize(&t->area, n, sizeof(double)) || !ab_memory_resize(&t->key, n, sizeof *t->key) ||
+            !ab_memory_resize(&t->start, n + 1, sizeof *t->start) || !ab_memory_resize(&t->vertex, n, sizeof *t->vertex))
             return false;
         for (size_t k = 0; k < 3 * n; ++k) t->extent[k] = 0.0;
         t->room_points = n;
     }
     if (stencil <= t->room_stencil) return true;
-    if (!grow(&t->dof, 2 * stencil, sizeof *t->dof) || !grow(&t->weight, 2 * stencil, sizeof *t->weight)) return false;
+    if (!ab_memory_resize(&t->dof, 2 * stencil, sizeof *t->dof) || !ab_memory_resize(&t->weight, 2 * stencil, sizeof *t->weight))
+        return false;
     t->room_stencil = 2 * stencil;
     return true;
 }

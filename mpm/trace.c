@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/node_list.h"
 #include "mpm/outline.h"
 
 typedef struct near_point {
@@ -13,13 +14,8 @@ typedef struct near_point {
 enum { TIED = sizeof(((mpm_tie *)0)->to) / sizeof(uint32_t) }; /* nodes that a light one goes by, at most */
 
 struct mpm_trace {
-    size_t capacity, near_capacity, entry_capacity, tile_capacity, density_capacity;
-    double *position, *mass, *mass_gradient, *area_vector, *density_gradient;
-    size_t *near_start, *stencil_start;
-    uint32_t *stencil_dof;
-    double *stencil_weight;
-    uint64_t *key;
-    double *near_position, *near_extent;
+    ab_node_list list;
+    size_t entry_capacity, tile_capacity;
     near_point *entries;
     mpm_near_pieces pieces; /* of the outline, where that is what touches */
     uint32_t *stamp;        /* per tile: candidate in call number stamp */
@@ -29,39 +25,22 @@ struct mpm_trace {
 
 void mpm_trace_destroy(struct mpm_trace *t) {
     if (!t) return;
-    free(t->position), free(t->mass), free(t->mass_gradient), free(t->area_vector), free(t->near_start), free(t->stencil_start);
-    free(t->stencil_dof), free(t->stencil_weight), free(t->key), free(t->near_position), free(t->near_extent), free(t->entries);
-    free(t->stamp), free(t->tile_list), free(t->density_gradient), free(t->pieces.list), free(t);
+    ab_node_list_clear(&t->list);
+    free(t->entries), free(t->stamp), free(t->tile_list), free(t->pieces.list), free(t);
 }
 
-static bool grow(void *pointer, size_t count, size_t size) {
-    void **p = pointer;
-    void *more = realloc(*p, count * size);
-    if (more) *p = more;
-    return more != NULL;
-}
-
-static bool reserve(mpm_body *body, size_t count) {
+static bool reserve(mpm_body *body, size_t count, uint32_t needs) {
     if (!body->trace) body->trace = calloc(1, sizeof *body->trace);
     struct mpm_trace *t = body->trace;
     if (!t) return false;
     if (body->tile_count > t->tile_capacity) {
         const size_t n = body->tile_count * 2;
-        if (!grow(&t->stamp, n, sizeof *t->stamp) || !grow(&t->tile_list, n, sizeof *t->tile_list)) return false;
+        if (!ab_memory_resize(&t->stamp, n, sizeof *t->stamp) || !ab_memory_resize(&t->tile_list, n, sizeof *t->tile_list)) return false;
         memset(t->stamp, 0, n * sizeof *t->stamp);
         t->tile_capacity = n;
         t->call = 0;
     }
-    if (count < t->capacity) return true;
-    const size_t n = (2 * count + 64) & ~(size_t)7;
-    if (!grow(&t->position, 2 * n, sizeof(double)) || !grow(&t->mass, n, sizeof(double)) ||
-        !grow(&t->mass_gradient, 2 * n, sizeof(double)) || !grow(&t->area_vector, 2 * n, sizeof(double)) ||
-        !grow(&t->near_start, n + 1, sizeof(size_t)) || !grow(&t->stencil_start, n + 1, sizeof(size_t)) ||
-        !grow(&t->stencil_dof, TIED * n, sizeof(uint32_t)) || !grow(&t->stencil_weight, TIED * n, sizeof(double)) ||
-        !grow(&t->key, n, sizeof(uint64_t)))
-        return false;
-    t->capacity = n;
-    return true;
+    return ab_node_list_reserve(&t->list, count, needs) && ab_node_list_reserve_stencil(&t->list, TIED * count);
 }
 
 /* The tiles whose points can reach a wanted node: its own and the eight around it. Ascending. */
@@ -116,7 +95,7 @@ bool mpm_trace_wanted(const mpm_tile *tile, int before, int width, const uint32_
 static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wanted[MPM_PATCH_MOST], uint32_t needs, size_t *entries) {
     struct mpm_trace *t = body->trace;
     const int nodes = body->kernel->nodes, patch = body->kernel->patch;
-    const size_t ld = t->capacity;
+    const size_t ld = t->list.capacity;
     bool reached[MPM_PATCH_MOST] = {false};             /* by the stencil that begins here */
     double low[2] = {patch, patch}, high[2] = {-1, -1}; /* bounds of the wanted nodes, then of the points that can reach them, m */
     for (int n = 0; n < patch * patch; ++n) {
@@ -149,7 +128,7 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
             if (body->ids[slot] == UINT64_MAX) continue;
             if (*entries + MPM_STENCIL > t->entry_capacity) {
                 const size_t more = 2 * t->entry_capacity + 1024;
-                if (!grow(&t->entries, more, sizeof *t->entries)) return false;
+                if (!ab_memory_resize(&t->entries, more, sizeof *t->entries)) return false;
                 t->entry_capacity = more;
             }
             const double round =
@@ -161,10 +140,10 @@ static bool look_at_tile(mpm_body *body, const mpm_tile *tile, const uint32_t wa
                     if (!at) continue;
                     const int k = j * nodes + i;
                     const double value = w.value[k][l], gx = w.gx[k][l], gy = w.gy[k][l];
-                    t->mass_gradient[at - 1] += mass * gx;
-                    t->mass_gradient[ld + at - 1] += mass * gy;
-                    t->area_vector[at - 1] += volume * gx;
-                    t->area_vector[ld + at - 1] += volume * gy;
+                    t->list.mass_gradient[at - 1] += mass * gx;
+                    t->list.mass_gradient[ld + at - 1] += mass * gy;
+                    t->list.area_vector[at - 1] += volume * gx;
+                    t->list.area_vector[ld + at - 1] += volume * gy;
                     if ((needs & AB_NEED_NEAR_POINTS) && value > 0.0) t->entries[(*entries)++] = (near_point){at - 1, slot};
                 }
         }
@@ -178,55 +157,51 @@ static bool list_near(mpm_body *body, const uint32_t *nodes, size_t count, size_
     const bool outline = body->outline && body->outline->touching;
     if (outline && !mpm_pieces_near(body, nodes, count, &t->pieces)) return false;
     const size_t pieces = outline ? t->pieces.count : 0;
-    if (entries + pieces > t->near_capacity) {
-        const size_t n = 2 * (entries + pieces) + 64;
-        if (!grow(&t->near_position, 2 * n, sizeof(double)) || !grow(&t->near_extent, 3 * n, sizeof(double))) return false;
-        t->near_capacity = n;
-    }
-    memset(t->near_start, 0, (count + 1) * sizeof *t->near_start); /* counting sort by node keeps the order of tiles and points */
-    for (size_t e = 0; e < entries; ++e) ++t->near_start[t->entries[e].node + 1];
-    for (size_t e = 0; e < pieces; ++e) ++t->near_start[t->pieces.list[e].node + 1];
-    for (size_t k = 0; k < count; ++k) t->near_start[k + 1] += t->near_start[k];
+    if (!ab_node_list_reserve_near(&t->list, entries + pieces)) return false;
+    memset(t->list.near_start, 0, (count + 1) * sizeof *t->list.near_start); /* counting sort by node keeps the order of tiles and points */
+    for (size_t e = 0; e < entries; ++e) ++t->list.near_start[t->entries[e].node + 1];
+    for (size_t e = 0; e < pieces; ++e) ++t->list.near_start[t->pieces.list[e].node + 1];
+    for (size_t k = 0; k < count; ++k) t->list.near_start[k + 1] += t->list.near_start[k];
     for (size_t e = 0; e < entries; ++e) {
-        const size_t to = t->near_start[t->entries[e].node]++;
+        const size_t to = t->list.near_start[t->entries[e].node]++;
         const double *point = mpm_block(body, t->entries[e].slot / 8) + t->entries[e].slot % 8;
-        for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = point[8 * (ROW_X + c)];
+        for (size_t c = 0; c < 2; ++c) t->list.near_position[c * t->list.near_capacity + to] = point[8 * (ROW_X + c)];
         for (size_t c = 0; c < 3; ++c)
-            t->near_extent[c * t->near_capacity + to] = outline ? 0.0 : point[8 * ((size_t)body->rows.extent + c)];
+            t->list.near_extent[c * t->list.near_capacity + to] = outline ? 0.0 : point[8 * ((size_t)body->rows.extent + c)];
     }
     for (size_t e = 0; e < pieces; ++e) {
         const mpm_near_piece *piece = t->pieces.list + e;
-        const size_t to = t->near_start[piece->node]++;
-        for (size_t c = 0; c < 2; ++c) t->near_position[c * t->near_capacity + to] = piece->x[c];
-        for (size_t c = 0; c < 3; ++c) t->near_extent[c * t->near_capacity + to] = piece->extent[c];
+        const size_t to = t->list.near_start[piece->node]++;
+        for (size_t c = 0; c < 2; ++c) t->list.near_position[c * t->list.near_capacity + to] = piece->x[c];
+        for (size_t c = 0; c < 3; ++c) t->list.near_extent[c * t->list.near_capacity + to] = piece->extent[c];
     }
-    for (size_t k = count; k > 0; --k) t->near_start[k] = t->near_start[k - 1];
-    t->near_start[0] = 0;
+    for (size_t k = count; k > 0; --k) t->list.near_start[k] = t->list.near_start[k - 1];
+    t->list.near_start[0] = 0;
     return true;
 }
 
 ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
-    if (!reserve(body, count)) goto no_memory;
+    if (!reserve(body, count, needs)) goto no_memory;
     struct mpm_trace *t = body->trace;
-    const size_t ld = t->capacity;
-    memset(t->mass_gradient, 0, 2 * ld * sizeof(double));
-    memset(t->area_vector, 0, 2 * ld * sizeof(double));
+    const size_t ld = t->list.capacity;
+    memset(t->list.mass_gradient, 0, 2 * ld * sizeof(double));
+    memset(t->list.area_vector, 0, 2 * ld * sizeof(double));
     size_t stencil = 0;
     for (size_t k = 0; k < count; ++k) {
         const mpm_tile *tile = body->tiles + nodes[k] / AB_TILE_NODES;
         const int n = (int)(nodes[k] % AB_TILE_NODES), i = tile->tx * AB_TILE + n % AB_TILE, j = tile->ty * AB_TILE + n / AB_TILE;
-        t->position[k] = body->h * i;
-        t->position[ld + k] = body->h * j;
-        t->mass[k] = body->own[(size_t)nodes[k] * OWN_RECORD + OWN_MASS];
-        t->key[k] = ab_tile_key(i, j);
+        t->list.position[k] = body->h * i;
+        t->list.position[ld + k] = body->h * j;
+        t->list.mass[k] = body->own[(size_t)nodes[k] * OWN_RECORD + OWN_MASS];
+        t->list.key[k] = ab_tile_key(i, j);
         const mpm_tie *tie = body->tie_count ? mpm_light_tie_of(body, nodes[k]) : NULL;
-        t->stencil_start[k] = stencil;
+        t->list.stencil_start[k] = stencil;
         for (int e = 0; tie && e < tie->count; ++e, ++stencil)
-            t->stencil_dof[stencil] = tie->to[e], t->stencil_weight[stencil] = tie->weight[e];
-        if (!tie) t->stencil_dof[stencil] = nodes[k], t->stencil_weight[stencil++] = 1.0;
+            t->list.stencil_dof[stencil] = tie->to[e], t->list.stencil_weight[stencil] = tie->weight[e];
+        if (!tie) t->list.stencil_dof[stencil] = nodes[k], t->list.stencil_weight[stencil++] = 1.0;
     }
-    t->stencil_start[count] = stencil;
+    t->list.stencil_start[count] = stencil;
     size_t entries = 0;
     if (needs & (AB_NEED_MASS_GRADIENT | AB_NEED_AREA_VECTOR | AB_NEED_NEAR_POINTS)) {
         const size_t tiles = candidate_tiles(body, nodes, count);
@@ -238,40 +213,19 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
         }
     }
     if (needs & AB_NEED_DENSITY_GRADIENT) {
-        if (ld > t->density_capacity && !grow(&t->density_gradient, 2 * ld, sizeof(double))) goto no_memory;
-        t->density_capacity = ld;
-        memset(t->density_gradient, 0, 2 * ld * sizeof(double));
+        memset(t->list.density_gradient, 0, 2 * ld * sizeof(double));
         const size_t tiles = candidate_tiles(body, nodes, count);
-        for (size_t k = 0; k < tiles; ++k) mpm_trace_density(body, body->tiles + t->tile_list[k], nodes, count, t->density_gradient, ld);
+        for (size_t k = 0; k < tiles; ++k)
+            mpm_trace_density(body, body->tiles + t->tile_list[k], nodes, count, t->list.density_gradient, ld);
     }
     for (size_t k = 0; body->axisymmetric && k < count; ++k) { /* on the axis: the other side of it is alike */
-        if (t->position[k] + body->origin[0] > 0.0) continue;
-        t->mass_gradient[k] = t->area_vector[k] = 0.0;
-        if (needs & AB_NEED_DENSITY_GRADIENT) t->density_gradient[k] = 0.0;
+        if (t->list.position[k] + body->origin[0] > 0.0) continue;
+        t->list.mass_gradient[k] = t->list.area_vector[k] = 0.0;
+        if (needs & AB_NEED_DENSITY_GRADIENT) t->list.density_gradient[k] = 0.0;
     }
     if ((needs & AB_NEED_NEAR_POINTS) && !list_near(body, nodes, count, entries)) goto no_memory;
-    *trace = (ab_trace){
-        .struct_size = sizeof *trace,
-        .dimension = 2,
-        .body = domain->spec->name,
-        .stiffness = body->modulus,
-        .cell = body->h,
-        .count = count,
-        .ld = ld,
-        .position = t->position,
-        .stencil_start = t->stencil_start,
-        .stencil_dof = t->stencil_dof,
-        .stencil_weight = t->stencil_weight,
-        .key = t->key,
-        .mass = t->mass,
-        .mass_gradient = (needs & AB_NEED_MASS_GRADIENT) ? t->mass_gradient : NULL,
-        .area_vector = (needs & AB_NEED_AREA_VECTOR) ? t->area_vector : NULL,
-        .near_start = (needs & AB_NEED_NEAR_POINTS) ? t->near_start : NULL,
-        .near_ld = t->near_capacity,
-        .near_position = t->near_position,
-        .near_extent = t->near_extent,
-        .density_gradient = (needs & AB_NEED_DENSITY_GRADIENT) ? t->density_gradient : NULL,
-    };
+    *trace = ab_node_list_show(&t->list, count, needs);
+    trace->body = domain->spec->name, trace->stiffness = body->modulus, trace->cell = body->h;
     return AB_OK;
 no_memory:
     return ab_report_failure(report, "body '%s': no memory for %zu nodes in contact", domain->spec->name, count);
