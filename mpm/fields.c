@@ -3,37 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/body_fields.h"
 #include "mpm/body.h"
 
-static const ab_field FIELDS[] = {
-    {"id", "1", 1, ""},
-    {"position", "m", 2, "x y"},
-    {"velocity", "m s-1", 2, "x y"},
-    {"displacement", "m", 2, "x y"},
-    {"mass", "kg m-1", 1, ""},
-    {"volume", "m2", 1, ""},
-    {"stress", "Pa", 4, "xx yy zz xy"},
-    {"deformation-gradient", "1", 4, "xx xy yx yy"},
-};
-enum { FIXED_FIELDS = sizeof FIELDS / sizeof *FIELDS };
-
-/* The list is made once per body; the material's states stand behind the fixed ones. */
 ab_status mpm_fields_create(mpm_body *body, ab_report *report) {
-    const ab_class *class_ = &body->material->loaded->class_;
-    body->fields = malloc((FIXED_FIELDS + class_->nstate) * sizeof *body->fields);
-    if (!body->fields) return ab_report_failure(report, "no memory for the list of fields of body '%s'", body->domain.spec->name);
-    for (size_t f = 0; f < FIXED_FIELDS; ++f) {
-        if (!strcmp(FIELDS[f].name, "displacement") && !body->birth) continue;
-        if (!strcmp(FIELDS[f].name, "deformation-gradient") && body->rows.gradient < 0) continue;
-        ab_field field = FIELDS[f];
-        if (body->axisymmetric && !strcmp(field.name, "mass")) field.unit = "kg"; /* of rings */
-        if (body->axisymmetric && !strcmp(field.name, "volume")) field.unit = "m3";
-        body->fields[body->field_count++] = field;
-    }
-    for (uint32_t s = 0; s < class_->nstate; ++s)
-        body->fields[body->field_count++] =
-            (ab_field){class_->state[s].name, class_->state[s].unit, ab_state_components(class_->state[s].shape), ""};
-    return AB_OK;
+    return ab_body_fields(&body->material->loaded->class_, body->domain.spec->name, body->axisymmetric, body->birth != NULL,
+                          body->rows.gradient >= 0, &body->fields, &body->field_count, report);
 }
 
 const ab_field *mpm_fields(const ab_domain *domain, size_t *count) {
