@@ -1,6 +1,6 @@
 /* checkpoint.c: the file: records on their way to the disk and back. */
 #define _GNU_SOURCE
-#include "core/checkpoint.h"
+#include "core/checkpoint_inner.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -12,7 +12,7 @@
 #include <zlib.h>
 
 static const char MAGIC[16] = "abut checkpoint\n";
-enum { FORMAT = 1, ORDER = 0x01020304, NAME = 400, BUFFER = 1 << 20, MOST_RECORDS = 1 << 26 };
+enum { FORMAT = 1, ORDER = 0x01020304, BUFFER = 1 << 20, MOST_RECORDS = 1 << 26 };
 
 typedef struct head { /* 64 bytes; each entry where every format has it */
     char magic[16];
@@ -27,36 +27,7 @@ typedef struct record_head {
     uint64_t count;
 } record_head;
 
-enum { DOUBLES = 1, U64, U32, BYTES };
-static const size_t WIDTH[] = {0, 8, 8, 4, 1};
 static const char *const WORD[] = {"", "doubles", "64-bit numbers", "32-bit numbers", "bytes"};
-
-typedef struct record {
-    const char *name;
-    size_t length;
-    uint32_t type;
-    size_t count;
-    const char *values;
-} record;
-
-struct ab_checkpoint {
-    char *path, *part; /* part: where it is written; NULL when it is read */
-    ab_report *report;
-    ab_status status;
-    char prefix[NAME];
-    size_t depth, depths[8];
-    /* writing */
-    int file;
-    int error; /* errno of the first write that failed */
-    char *buffer;
-    size_t buffered;
-    uint64_t written;
-    uint32_t crc;
-    /* reading */
-    char *bytes;
-    record *records;
-    size_t count, next; /* next: most likely wanted */
-};
 
 static size_t padded(size_t bytes) { return (bytes + 7) / 8 * 8; }
 
@@ -121,10 +92,10 @@ static void add(ab_checkpoint *c, const void *values, size_t count) {
     }
 }
 
-static void save(ab_checkpoint *c, const char *name, uint32_t type, const void *values, size_t count) {
+void ab_checkpoint_save(ab_checkpoint *c, const char *name, uint32_t type, const void *values, size_t count) {
     static const char zeros[8] = {0};
-    char whole[2 * NAME];
-    const size_t length = (size_t)snprintf(whole, sizeof whole, "%s%s", c->prefix, name), bytes = count * WIDTH[type];
+    char whole[2 * AB_CHECKPOINT_ITEM];
+    const size_t length = (size_t)snprintf(whole, sizeof whole, "%s%s", c->prefix, name), bytes = count * AB_CHECKPOINT_WIDTH[type];
     const record_head r = {(uint32_t)length, type, count};
     add(c, &r, sizeof r);
     add(c, whole, length);
@@ -282,19 +253,20 @@ static bool cut(ab_checkpoint *c, size_t size) {
         record_head r;
         bool good = size - at >= sizeof r;
         if (good) memcpy(&r, c->bytes + at, sizeof r), at += sizeof r;
-        good = good && r.type >= DOUBLES && r.type <= BYTES && r.name > 0 && r.name < 2 * NAME && padded(r.name) <= size - at;
+        good = good && r.type >= AB_DOUBLES && r.type <= AB_BYTES && r.name > 0 && r.name < 2 * AB_CHECKPOINT_ITEM &&
+               padded(r.name) <= size - at;
         const size_t values = good ? at + padded(r.name) : 0;
-        good = good && r.count <= (size - values) / WIDTH[r.type] && padded(r.count * WIDTH[r.type]) <= size - values &&
-               c->count < MOST_RECORDS;
+        good = good && r.count <= (size - values) / AB_CHECKPOINT_WIDTH[r.type] &&
+               padded(r.count * AB_CHECKPOINT_WIDTH[r.type]) <= size - values && c->count < MOST_RECORDS;
         if (!good) return ab_checkpoint_refuse(c, "is damaged: record %zu does not fit in it", c->count);
         if (c->count == capacity) {
             capacity = 2 * capacity + 256;
-            record *more = realloc(c->records, capacity * sizeof *more);
+            ab_checkpoint_record *more = realloc(c->records, capacity * sizeof *more);
             if (more == NULL) return ab_checkpoint_refuse(c, "no memory for its list of records");
             c->records = more;
         }
-        c->records[c->count++] = (record){c->bytes + at, r.name, r.type, r.count, c->bytes + values};
-        at = values + padded(r.count * WIDTH[r.type]);
+        c->records[c->count++] = (ab_checkpoint_record){c->bytes + at, r.name, r.type, r.count, c->bytes + values};
+        at = values + padded(r.count * AB_CHECKPOINT_WIDTH[r.type]);
     }
     return true;
 }
@@ -313,12 +285,11 @@ ab_status ab_checkpoint_open(const char *path, ab_checkpoint **checkpoint, ab_re
     return status;
 }
 
-/* Items are asked for in the order in which they were saved, but for those that somebody passes over. */
-static const record *find(ab_checkpoint *c, const char *name) {
-    char whole[2 * NAME];
+const ab_checkpoint_record *ab_checkpoint_find(ab_checkpoint *c, const char *name) {
+    char whole[2 * AB_CHECKPOINT_ITEM];
     const size_t length = (size_t)snprintf(whole, sizeof whole, "%s%s", c->prefix, name);
     for (size_t k = 0; k < c->count; k++) {
-        const record *r = &c->records[(c->next + k) % c->count];
+        const ab_checkpoint_record *r = &c->records[(c->next + k) % c->count];
         if (r->length != length || memcmp(r->name, whole, length) != 0) continue;
         c->next = (size_t)(r - c->records) + 1;
         return r;
@@ -326,122 +297,12 @@ static const record *find(ab_checkpoint *c, const char *name) {
     return NULL;
 }
 
-static bool load(ab_checkpoint *c, const char *name, uint32_t type, void *values, size_t count) {
-    const record *r = find(c, name);
+bool ab_checkpoint_load(ab_checkpoint *c, const char *name, uint32_t type, void *values, size_t count) {
+    const ab_checkpoint_record *r = ab_checkpoint_find(c, name);
     if (r == NULL) return ab_checkpoint_refuse(c, "has no '%s%s': it is of another scene or of another build of abut", c->prefix, name);
     if (r->type != type || r->count != count)
         return ab_checkpoint_refuse(c, "'%s%s' has %zu %s and %zu %s are wanted: it is of another scene or of another build of abut",
                                     c->prefix, name, r->count, WORD[r->type], count, WORD[type]);
-    if (count > 0) memcpy(values, r->values, count * WIDTH[type]);
+    if (count > 0) memcpy(values, r->values, count * AB_CHECKPOINT_WIDTH[type]);
     return true;
-}
-
-/* ---- items ------------------------------------------------------------------------------------------------------------------ */
-
-static bool keep(ab_checkpoint *c, const char *name, uint32_t type, void *values, size_t count) {
-    if (c->status != AB_OK) return false;
-    if (ab_checkpoint_loads(c)) return load(c, name, type, values, count);
-    save(c, name, type, values, count);
-    return true;
-}
-
-bool ab_keep_doubles(ab_checkpoint *c, const char *name, double *values, size_t count) { return keep(c, name, DOUBLES, values, count); }
-bool ab_keep_u64(ab_checkpoint *c, const char *name, uint64_t *values, size_t count) { return keep(c, name, U64, values, count); }
-bool ab_keep_u32(ab_checkpoint *c, const char *name, uint32_t *values, size_t count) { return keep(c, name, U32, values, count); }
-bool ab_keep_bytes(ab_checkpoint *c, const char *name, void *values, size_t count) { return keep(c, name, BYTES, values, count); }
-
-bool ab_keep_flags(ab_checkpoint *c, const char *name, bool *values, size_t count) {
-    const record *r = c->status == AB_OK && ab_checkpoint_loads(c) ? find(c, name) : NULL;
-    for (size_t k = 0; r != NULL && r->type == BYTES && k < r->count; k++) /* another bit pattern is no bool */
-        if (r->values[k] != 0 && r->values[k] != 1) return ab_checkpoint_refuse(c, "'%s%s' is damaged", c->prefix, name);
-    if (r != NULL) c->next = (size_t)(r - c->records);
-    return keep(c, name, BYTES, values, count);
-}
-
-bool ab_keep_size(ab_checkpoint *c, const char *name, size_t *value) {
-    uint64_t number = *value;
-    if (!keep(c, name, U64, &number, 1)) return false;
-    *value = (size_t)number;
-    return true;
-}
-
-bool ab_keep_long(ab_checkpoint *c, const char *name, long *value) {
-    uint64_t number = (uint64_t)*value;
-    if (!keep(c, name, U64, &number, 1)) return false;
-    *value = (long)number;
-    return true;
-}
-
-bool ab_keep_count(ab_checkpoint *c, const char *name, size_t *count, size_t each) {
-    size_t number = *count;
-    if (!ab_keep_size(c, name, &number)) return false;
-    if (ab_checkpoint_loads(c)) {
-        const record *last = &c->records[c->count - 1];
-        const size_t bytes = (size_t)(last->values - c->bytes) + last->count * WIDTH[last->type];
-        if (number > bytes / (each > 0 ? each : 1))
-            return ab_checkpoint_refuse(c, "'%s%s' is damaged: %zu is more than it has", c->prefix, name, number);
-    }
-    *count = number;
-    return true;
-}
-
-bool ab_checkpoint_put(ab_checkpoint *c, const char *name, const void *bytes, size_t count) {
-    if (c->status != AB_OK) return false;
-    save(c, name, BYTES, bytes, count);
-    return true;
-}
-
-const void *ab_checkpoint_get(ab_checkpoint *c, const char *name, size_t *count) {
-    const record *r = c->status == AB_OK ? find(c, name) : NULL;
-    *count = 0;
-    if (r == NULL || r->type != BYTES) return NULL;
-    *count = r->count;
-    return r->values;
-}
-
-/* ---- plugins ---------------------------------------------------------------------------------------------------------------- */
-
-typedef struct stream {
-    char *bytes;
-    size_t count, capacity, at;
-} stream;
-
-static int stream_write(void *context, const void *bytes, size_t count) {
-    stream *s = context;
-    if (count > s->capacity - s->count) {
-        const size_t capacity = 2 * (s->count + count) + 256;
-        char *more = realloc(s->bytes, capacity);
-        if (more == NULL) return -1;
-        s->bytes = more;
-        s->capacity = capacity;
-    }
-    if (count > 0) memcpy(s->bytes + s->count, bytes, count);
-    s->count += count;
-    return 0;
-}
-
-static int stream_read(void *context, void *bytes, size_t count) {
-    stream *s = context;
-    if (count > s->count - s->at) return -1;
-    if (count > 0) memcpy(bytes, s->bytes + s->at, count);
-    s->at += count;
-    return 0;
-}
-
-bool ab_keep_plugin(ab_checkpoint *c, const char *name, const ab_class *class_, void *self) {
-    if (c->status != AB_OK) return false;
-    if (class_->save == NULL) return true;
-    stream s = {0};
-    const ab_stream given = {sizeof given, &s, stream_write, stream_read};
-    if (ab_checkpoint_loads(c)) {
-        s.bytes = (char *)(uintptr_t)ab_checkpoint_get(c, name, &s.count);
-        if (s.bytes == NULL) return ab_checkpoint_refuse(c, "has no '%s%s'", c->prefix, name);
-        if (class_->load(self, &given) != 0 || s.at != s.count)
-            return ab_checkpoint_refuse(c, "plugin '%s' cannot read its own part of it, '%s%s'", class_->name, c->prefix, name);
-        return true;
-    }
-    const bool good = class_->save(self, &given) == 0;
-    if (good) save(c, name, BYTES, s.bytes, s.count);
-    free(s.bytes);
-    return good || ab_checkpoint_refuse(c, "plugin '%s' cannot save its state ('%s%s')", class_->name, c->prefix, name);
 }
