@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/doubts_room.h"
 #include "core/doubts_springs.h"
 
 static const double HOPELESS =
@@ -106,40 +107,6 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
         body->name, cells, speed_of(s, b), s->critical_dt);
 }
 
-/* Where nothing but its own speed moves a body it flies straight on: out of a grid that ends before the run does. */
-static ab_status doubt_room(const ab_schedule *s, size_t b, ab_report *report) {
-    static const char *const SIDE[] = {"left", "right", "bottom", "top"};
-    const ab_scene *scene = s->scene;
-    const ab_body_spec *body = scene->bodies + b;
-    const ab_motion *motion = s->motion + b;
-    const ab_domain *domain = s->domains[b];
-    bool alone = is(body->method, "material-points") && scene->contact_count == 0 && scene->load_count == 0 && scene->boundary_count == 0 &&
-                 scene->stage_count == 0 && !body->has_force && motion->mass > 0.0;
-    for (int c = 0; c < 2; ++c)
-        alone = alone && ab_number_is_constant(scene->gravity + c) && ab_number_at(scene->gravity + c, 0.0, 0.0, 0.0, 0.0) == 0.0;
-    for (int k = 0; k < 4; ++k) alone = alone && (scene->side[k] == AB_SIDE_FREE || scene->side[k] == AB_SIDE_OUTFLOW);
-    if (!alone) return AB_OK;
-    const size_t count = domain->ops->count(domain);
-    double *x = malloc((2 * count + 1) * sizeof *x);
-    if (!x) return ab_report_failure(report, "no memory for the places of %zu points", count);
-    const ab_status status = domain->ops->read(domain, "position", x, report);
-    for (int c = 0; c < 2 && status == AB_OK; ++c) {
-        const double v = motion->momentum[c] / motion->mass, low = scene->grid_from[c],
-                     high = low + scene->grid_cells[c] * scene->grid_cell;
-        const int side = 2 * c + (v > 0.0);
-        double way = INFINITY;
-        for (size_t k = 0; k < count; ++k) way = fmin(way, v > 0.0 ? high - x[2 * k + (size_t)c] : x[2 * k + (size_t)c] - low);
-        if (fabs(v) * scene->time_end > way && scene->side[side] != AB_SIDE_OUTFLOW)
-            ab_report_warning(
-                report, body->mark,
-                "bodies.%s: at its speed along %s, %.4g m/s, it leaves the grid through its %s side at about %.4g s, before time.end; make "
-                "the grid larger, or say 'outflow' there",
-                body->name, c ? "y" : "x", v, SIDE[side], way / fabs(v));
-    }
-    free(x);
-    return status;
-}
-
 /* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). */
 static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
     const ab_class *finder = &contact->finder->class_;
@@ -167,13 +134,13 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
         AB_TRY(check_first_step(s, b, report));
         AB_TRY(doubt_flight(s, b, report));
         AB_TRY(doubt_crossing(s, b, report));
-        AB_TRY(doubt_room(s, b, report));
         doubt_poisson(s, b, report);
         if (is(body->basis, "bspline3") && is(body->update, "usl") && scene->time_cfl > SPLINE_CFL)
             ab_report_warning(report, scene->mark_time,
                               "time.cfl %g: basis bspline3 with update usl (body '%s') is stable up to about %g; use that, or update musl",
                               scene->time_cfl, body->name, SPLINE_CFL);
     }
+    AB_TRY(ab_doubt_room(s, report));
     for (size_t c = 0; c < scene->contact_count; ++c) AB_TRY(doubt_single_point(s, scene->contacts + c, report));
     AB_TRY(ab_doubt_springs(s, report));
     if (scene->time_dt > HOPELESS * s->critical_dt && scene->watch)

@@ -49,8 +49,22 @@ expect run 1 "turned inside out .*dt is above the limit of the mesh as it is now
 expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
 expect check 2 "contact: body 'stone' is a single material point" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
-expect check 0 "warning: bodies.block: at its speed along x, [0-9.e-]+ m/s, it leaves the grid through its right side at about [0-9.e+]+ s, before time.end" crossings 'grid.to=[20, 3]'
+expect check 0 "warning: bodies.block: by its speed it leaves the grid through its right side at about [0-9.]+ s, before time.end, and would be [0-9.]+ m beyond" crossings 'grid.to=[20, 3]'
 expect check 0 - crossings 'grid.to=[20, 3]' 'grid.sides={right: outflow}'
+# 1.275 m down at 0.1 m/s2: 5.05 s; the run ends at 10 s, 5 - 1.275 m below
+fall=(crossings constants.crossings=10 'gravity=[0, -0.1]' "bodies.ledge={method: rigid, shape: {box: [[2, -0.8], [5, -0.6]]}, motion: {velocity: [0, 0], spin: 0}}")
+past="bodies.ledge.shape.box=[[-2, -0.8], [-1.5, -0.6]]"
+meets='contact=[{bodies: [block, ledge], algorithm: point-to-segment, response: frictionless}]'
+expect plan 0 "warning: bodies.block: by its speed and gravity it leaves the grid through its bottom side at about 5.05 s, before time.end, and would be 3.7[0-9]* m beyond" "${fall[@]}"
+expect check 0 - "${fall[@]}" "$meets"
+expect check 0 "bodies.block: by its speed and gravity it leaves the grid through its bottom side at about 5.05" "${fall[@]}" "$meets" "$past"
+expect check 0 - "${fall[@]}" "$meets" "$past" 'grid.sides={bottom: roller}'
+expect check 0 - "${fall[@]}" 'gravity=[0, -0.1*(t > 6)]'
+expect check 0 - "${fall[@]}" 'damping={local: 0.1}'
+expect check 0 "through its bottom side at about 8.0[0-9]* s" "${fall[@]}" 'gravity=[0, "t < 3 ? 0 : -0.1"]'
+expect run 1 "left the grid through its bottom side at .* t = 5.0[0-9]* s" "${fall[@]}"
+expect check 0 "through its top side at about 1.78[0-9]* s|through its top side at about 1.77[0-9]* s" "${fall[@]}" 'bodies.block.velocity=[0.1, 1.2]'
+expect check 0 - "${fall[@]}" bodies.block.gravity=false
 expect check 0 - crossings
 # springs against the step: the limits that the run finds are 0.00183 s, 0.00100 s and 1.00e-5 s for stiffness 30, 100 and 1e6
 springs=../verification/springs_slide
