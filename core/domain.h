@@ -85,7 +85,7 @@ typedef struct ab_edge_list {
     const double *normal;                      /* unit, out of the body */
     const double *area;                        /* m2 (m in plane strain; of the ring in axisymmetric scenes), now */
     const double *density;                     /* kg/m3, of the body there, now */
-    const double *p_wave_speed, *s_wave_speed; /* m/s */
+    const double *p_wave_speed, *s_wave_speed; /* m/s, of the moduli at the start and the density now */
     const size_t *start;                       /* count + 1: dofs of edge e are dof[start[e]] .. dof[start[e+1]-1] */
     const uint32_t *dof;
     const double *weight; /* sum 1 */

@@ -101,14 +101,10 @@ static ab_status create_one(fem_body *body, const fem_faces *faces, size_t bound
             e->shares[e->share_count++] = s;
         }
     }
-    const double density = body->elastic.density;
     e->ld = (e->count + 7) / 8 * 8; /* as the rows of the host, which it hands to plugins beside its own */
     for (size_t k = 0; k < e->count; ++k) {
         e->weight[k] = 1.0;
         e->rows[3 * e->ld + k] = -1.0; /* of an edge that never has an area, on the axis */
-        e->rows[5 * e->ld + k] = density;
-        e->rows[6 * e->ld + k] = sqrt((body->elastic.lambda + 2.0 * body->elastic.mu) / density);
-        e->rows[7 * e->ld + k] = sqrt(body->elastic.mu / density);
     }
     return AB_OK;
 }
@@ -149,6 +145,8 @@ ab_status fem_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
         const double *vector = e->vector + 2 * k, length = hypot(vector[0], vector[1]);
         for (size_t c = 0; c < 2; ++c) x[c * ld + k] = body->x[2 * (size_t)e->dof[k] + c];
         density[k] = area[k] > 0.0 ? density[k] / area[k] : body->elastic.density;
+        x[6 * ld + k] = sqrt((body->elastic.lambda + 2.0 * body->elastic.mu) / density[k]);
+        x[7 * ld + k] = sqrt(body->elastic.mu / density[k]);
         area[k] = length;
         if (length > 0.0)
             for (size_t c = 0; c < 2; ++c) normal[c * ld + k] = vector[c] / length;

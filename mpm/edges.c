@@ -156,11 +156,12 @@ ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
         if (!(half > 0.0)) continue;
         const double n[2] = {piece->stretch[1] / half, -piece->stretch[0] / half}, rho = point[8 * ROW_MASS] / point[8 * ROW_VOLUME],
                      size = 2.0 * half * (body->axisymmetric ? ab_circumference(piece->now[0] + body->origin[0]) : 1.0);
+        const double p_speed = sqrt(body->modulus / rho), s_speed = sqrt(body->shear_modulus / rho);
         double t[2] = {0.0, 0.0};
         if (e->hold) own_traction(body, piece, n, rho, step->gravity, t);
         for (size_t k = first; k < first + e->group; ++k) {
             for (size_t c = 0; c < 2; ++c) x[c * ld + k] = piece->now[c], normal[c * ld + k] = n[c], traction[c * ld + k] = t[c];
-            density[k] = rho;
+            density[k] = rho, x[6 * ld + k] = p_speed, x[7 * ld + k] = s_speed;
         }
         if (e->group > 1) {
             share_out(body, e, p, size);

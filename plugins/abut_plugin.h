@@ -194,7 +194,7 @@ typedef struct ab_edges {
     const double *displacement; /* m, since the boundary began to act; dimension rows */
     const double *velocity;     /* m/s; dimension rows */
     const double *area;         /* m2 (m in plane strain; of the ring, m2, in axisymmetry), now */
-    const double *density, *p_wave_speed, *s_wave_speed; /* of the body there; kg/m3 now, m/s of the material at its start */
+    const double *density, *p_wave_speed, *s_wave_speed; /* of the body there, now; kg/m3, m/s by the moduli of the material at its start */
     double *traction; /* Pa on the body, at this place and velocity; dimension rows. Zeroed by the host */
     const double *state0;
     double *state1;

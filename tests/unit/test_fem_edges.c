@@ -141,8 +141,8 @@ static void test_density_and_wave_speeds(void **state) {
     look(&o);
     for (size_t e = 0; e < 3; ++e) {
         assert_float_equal(o.list.density[e], 2.0 / 0.8, 1e-12);
-        assert_float_equal(o.list.p_wave_speed[e], sqrt(1200.0 / 2.0), 1e-5 * 24); /* lambda = mu = 400 Pa */
-        assert_float_equal(o.list.s_wave_speed[e], sqrt(400.0 / 2.0), 1e-5 * 14);
+        assert_float_equal(o.list.p_wave_speed[e], sqrt(1200.0 / 2.5), 1e-5 * 24); /* lambda = mu = 400 Pa */
+        assert_float_equal(o.list.s_wave_speed[e], sqrt(400.0 / 2.5), 1e-5 * 14);
     }
     destroy(&o);
 }
