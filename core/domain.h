@@ -21,7 +21,8 @@ typedef struct ab_step { /* one time step, the same for every domain */
     size_t stage;      /* of the scene; 0 where it has none */
     bool settling;     /* what is driven stands still: velocities that are given are 0 */
     bool measure;      /* balance() will be asked for */
-    bool from_rest;    /* bodies were at rest at its start, not half a step before: forces act for half of dt on velocities */
+    bool early; /* some body in contact strains first: until trial() dofs have old velocities, and contact's work on those is forgotten */
+    bool from_rest; /* bodies were at rest at its start, not half a step before: forces act for half of dt on velocities */
 } ab_step;
 
 /* What a body did in one step or since the start; J (per m of thickness in plane strain): the ledger. */

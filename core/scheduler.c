@@ -238,6 +238,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
         any_remap = any_remap || s->domains[b]->ops->remap;
     }
     ab_interaction *in = s->interaction;
+    step.early = any_early && in;
     ab_boundaries *edges = s->boundaries;
     ab_status status = AB_OK;
     s->half_done = true;

@@ -77,7 +77,15 @@ static ab_status begin(ab_domain *domain, const ab_step *step, ab_report *report
         mpm_loads_scatter(body, step);
         mpm_body_force_scatter(body);
     }
-    mpm_grid_assemble(body, step, !mpm_strains_first(body->update));
+    mpm_grid_assemble(body, step, !step->early && !mpm_strains_first(body->update));
+    return mpm_light_tie(body, report);
+}
+
+/* Beside a body that strains first: velocities before any force, which contact has worked on, give way to the trial ones. */
+static ab_status trial(ab_domain *domain, const ab_step *step, ab_report *report) {
+    mpm_body *body = (mpm_body *)domain;
+    if (!step->early || mpm_strains_first(body->update)) return AB_OK;
+    mpm_grid_assemble(body, step, true);
     return mpm_light_tie(body, report);
 }
 
@@ -307,10 +315,10 @@ static double modulus(const ab_domain *domain) { return ((const mpm_body *)domai
 
 /* The updates differ in two entries: USF strains early, MUSL maps velocities back, USAVG does both, USL neither. */
 #define SAME_IN_ALL                                                                                                                        \
-    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .finish = finish, .stress = stress,       \
-    .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count, .fields = mpm_fields,                \
-    .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .edges = mpm_edges, .read = mpm_read, .plan = mpm_plan,  \
-    .keep = mpm_keep, .enter = mpm_enter, .rest = mpm_rest, .datum = mpm_datum, .balance = mpm_balance
+    .method = "material-points", .destroy = destroy, .critical_dt = critical_dt, .begin = begin, .trial = trial, .finish = finish,         \
+    .stress = stress, .ledger = ledger, .node_tiles = node_tiles, .trace = mpm_trace, .dofs = dofs, .count = mpm_count,                    \
+    .fields = mpm_fields, .faces = mpm_faces, .surface_points = mpm_surface_points, .modulus = modulus, .edges = mpm_edges,                \
+    .read = mpm_read, .plan = mpm_plan, .keep = mpm_keep, .enter = mpm_enter, .rest = mpm_rest, .datum = mpm_datum, .balance = mpm_balance
 static const ab_domain_ops OPS_USL = {SAME_IN_ALL};
 static const ab_domain_ops OPS_USF = {SAME_IN_ALL, .early = early};
 static const ab_domain_ops OPS_MUSL = {SAME_IN_ALL, .remap = remap};
