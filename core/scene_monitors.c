@@ -132,6 +132,38 @@ static bool take_subject(ab_scene_reader *r, const ab_node *const *v, const char
     return true;
 }
 
+/* How far outside its body's box a place may be drawn before it is doubted, m, with the box; false: nobody knows the box. */
+static bool box_of(const ab_scene_reader *r, const ab_monitor_spec *monitor, double low[2], double high[2], double *slack) {
+    if (!ab_body_bounds(&r->scene->bodies[monitor->body], low, high)) return false;
+    *slack = r->scene->grid_cell > 0 ? r->scene->grid_cell : 0.05 * fmax(high[0] - low[0], high[1] - low[1]);
+    return true;
+}
+
+static void warn_of_place_outside(ab_scene_reader *r, const ab_node *node, const char *where, const ab_monitor_spec *monitor) {
+    char path[AB_WHERE];
+    double low[2], high[2], slack;
+    if (!monitor->has_at || !box_of(r, monitor, low, high, &slack)) return;
+    for (int d = 0; d < 2; d++)
+        if (monitor->at[d] < low[d] - slack || monitor->at[d] > high[d] + slack) {
+            ab_report_warning(r->base.report, node->mark, "%s: [%g, %g] lies outside body '%s'; its nearest point is taken",
+                              ab_where_join(path, where, "at"), monitor->at[0], monitor->at[1], r->scene->bodies[monitor->body].name);
+            break;
+        }
+}
+
+/* A single x or y means the points nearest to it, however far they are. */
+static void warn_of_row_outside(ab_scene_reader *r, const ab_node *node, const char *where, const ab_monitor_spec *monitor) {
+    char path[AB_WHERE];
+    double low[2], high[2], slack;
+    if (!monitor->has_where || !box_of(r, monitor, low, high, &slack)) return;
+    for (int d = 0; d < 2; d++) {
+        const double *range = monitor->where.range[d];
+        if (monitor->where.has[d] && range[0] == range[1] && (range[0] < low[d] - slack || range[0] > high[d] + slack))
+            ab_report_warning(r->base.report, node->mark, "%s: %c = %g lies outside body '%s'; its nearest points are taken",
+                              ab_where_join(path, where, "where"), d ? 'y' : 'x', range[0], r->scene->bodies[monitor->body].name);
+    }
+}
+
 static void take_places(ab_scene_reader *r, const ab_node *const *v, const char *where, ab_monitor_spec *monitor) {
     char path[AB_WHERE];
     const ab_scene *scene = r->scene;
@@ -157,20 +189,12 @@ static void take_places(ab_scene_reader *r, const ab_node *const *v, const char 
                 ab_report_error(r->base.report, v[place_keys[i]]->mark, "%s: at names one point, so %s has no meaning; keep one", where,
                                 ab_section_monitor.keys[place_keys[i]].name);
         monitor->has_at = ab_read_point(&r->base, &ab_section_monitor.keys[MONITOR_AT], v[MONITOR_AT], where, monitor->at);
-        double low[2], high[2];
-        const ab_body_spec *body = &scene->bodies[monitor->body];
-        if (!monitor->has_at || !ab_body_bounds(body, low, high)) return;
-        const double slack = scene->grid_cell > 0 ? scene->grid_cell : 0.05 * fmax(high[0] - low[0], high[1] - low[1]);
-        for (int d = 0; d < 2; d++)
-            if (monitor->at[d] < low[d] - slack || monitor->at[d] > high[d] + slack) {
-                ab_report_warning(r->base.report, v[MONITOR_AT]->mark, "%s: [%g, %g] lies outside body '%s'; its nearest point is taken",
-                                  ab_where_join(path, where, "at"), monitor->at[0], monitor->at[1], body->name);
-                break;
-            }
+        warn_of_place_outside(r, v[MONITOR_AT], where, monitor);
         return;
     }
     if (v[MONITOR_WHERE] != NULL)
         monitor->has_where = ab_scene_take_where(r, v[MONITOR_WHERE], ab_where_join(path, where, "where"), &monitor->where);
+    warn_of_row_outside(r, v[MONITOR_WHERE], where, monitor);
     if (v[MONITOR_OVER] != NULL)
         ab_read_word(&r->base, &ab_section_monitor.keys[MONITOR_OVER], v[MONITOR_OVER], where, &monitor->over);
     else if (strcmp(monitor->value, "mass") != 0 && strcmp(monitor->value, "volume") != 0)

@@ -232,6 +232,9 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     for (int c = 0; c < scene->dimension; ++c) step.gravity[c] = ab_number_at(scene->gravity + c, s->time + 0.5 * dt, 0.0, 0.0, 0.0);
     step.damping = s->time < scene->damping_until ? scene->damping_local : 0.0;
     if (s->stages) ab_stages_fill(s, &step);
+    for (int c = 0; c < scene->dimension; ++c)
+        AB_TRY(ab_number_finite(scene->gravity + c, step.gravity[c], step.settling ? 0.0 : s->time + 0.5 * dt, NULL, report, "gravity[%d]",
+                                c));
     bool any_early = false, any_remap = false;
     for (size_t b = 0; b < s->body_count; ++b) {
         any_early = any_early || s->domains[b]->ops->early;

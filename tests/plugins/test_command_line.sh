@@ -97,10 +97,17 @@ bodies:
 monitors: [{name: speed, body: stone, value: velocity.y}]
 expect: [{name: speed after a tenth of a second, monitor: speed, reference: "-said", norm: final, tolerance: 1e-6}]
 YAML
+sed -e 's|^gravity.*|gravity: [1/t, -10]|' -e 's|shape: {box|initial: {stress: gravity}, &|' ../falls.yaml >../settles.yaml
 expect 0 '' "${falls[@]}"
 expect 3 '' "${falls[@]}" --strict
 expect 0 '' "${falls[@]}" --strict --set constants.said=1
 expect 1 'cannot|not|could' "${falls[@]}" -o /dev/null/results
+# A gravity without a value is named, in a run and in a stage; dt is not to blame.
+expect 1 'error: gravity\[1\] is -?nan at t = 0\.05[0-9]* s, which is no finite number' "${falls[@]}" --set 'gravity=[0, "-10*sqrt(0.05-t)"]'
+expect 2 ':4:11: error: gravity\[0\] is inf at t = 0 s, which is no finite number' run ../settles.yaml --quiet -o here
+# A row of points that is looked for far from its body is doubted, as a place is.
+expect 0 "warning: monitors\[0\].where: x = 9 lies outside body 'stone'; its nearest points are taken" check ../falls.yaml --set 'monitors[0].where={x: 9}'
+expect 0 'ok: 1 body, 1 material, 1 monitor, 1 expect$' check ../falls.yaml --set 'monitors[0].where={x: 1.2}'
 for file in history.csv summary.json; do
     [ -s "here/$file" ] || { wrong=1; echo "here/$file is missing"; }
 done

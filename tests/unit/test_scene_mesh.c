@@ -366,6 +366,13 @@ static void test_doubtful_choices_are_warned_of(void **state) {
     assert_int_equal(o.status, AB_OK);
     assert_true(said(&o, "monitors[0].at: [4.75, 0.25] lies outside body 'beam'; its nearest point is taken"));
     forget(&o);
+    o = read_with("at: [3.75, 0.25], value", "where: {x: 4.75, y: [0, 0.1]}, value", NULL, NULL);
+    assert_int_equal(o.status, AB_OK);
+    assert_true(said(&o, "monitors[0].where: x = 4.75 lies outside body 'beam'; its nearest points are taken"));
+    forget(&o);
+    o = read_with("at: [3.75, 0.25], value", "where: {x: 3.7, y: [0, 0.1]}, value", NULL, NULL);
+    assert_int_equal(ab_report_warnings(o.report), 0);
+    forget(&o);
     o = read_with("contact:\n  - {bodies: [punch, beam], algorithm: faces}\n", "", NULL, NULL);
     assert_int_equal(o.status, AB_OK);
     assert_true(said(&o, "bodies 'beam' and 'punch' touch or overlap at the start but have no entry in contact"));
