@@ -149,14 +149,14 @@ def large(build, folder):
 def oblique(build, folder):
     for waves in (5, 10):
         print(f"elements per c_p w: {waves}", flush=True)
-        subprocess.run([HERE / "test_oblique.py", build, "--set", f"constants.waves={waves}"], check=False)
+        subprocess.run([HERE / "test_oblique.py", build, "--points", "--set", f"constants.waves={waves}"], check=False)
 
 
 # ---- line load ----------------------------------------------------------------------------------------------------------------
 
 
 def block(name, size, h, sides, at):
-    """A quarter plane of size x size m under a line load at its upper left corner (x = at), cut off by `sides`."""
+    """A quarter plane of size x size m of elements under a line load at its upper left corner (x = at), cut off by `sides`."""
     n = round(size / h)
     fix = f"{{where: {{side: left}}, velocity: [0, null]}}"
     boundary = ""
@@ -173,18 +173,24 @@ PLACES = {"A": (0, 4), "B": (2, 4), "C": (4, 4), "D": (0, 2), "E": (4, 2), "F": 
 
 
 def line_load(build, folder, duration, end, h, large_size, kinds):
-    a, t0 = 0.21 * duration, 0.5 * duration
+    a, t0, wide = 0.21 * duration, 0.5 * duration, h * math.floor(0.2 / h + 1e-9)
     names = {"large": ("viscous", large_size), **{k: (v, 4) for k, v in kinds.items()}}
-    bodies = loads = boundaries = monitors = ""
+    bodies = loads = boundaries = monitors = grid = ""
     for i, (name, (sides, size)) in enumerate(names.items()):
         at = 40 * i
         body, boundary = block(name, size, h, sides, at)
+        points = name.startswith("points")
+        if points:  # both halves, in cells of 2 h, so that points stand as far apart as nodes
+            cell, others = 2 * h, [40 * k for k, other in enumerate(names) if other.startswith("points")]
+            grid = f"grid: {{from: [{others[0] - 4 - 4 * cell}, {-4 * cell}], to: [{others[-1] + 4 + 4 * cell}, {4 + 4 * cell}], cell: {cell}}}\n"
+            body = f"  {name}: {{method: material-points, material: ground, shape: {{box: [[{at - 4}, 0], [{at + 4}, 4]]}}, basis: gimp, transfer: apic}}\n"
+            boundary += f"  - {{on: {name}, where: {{side: left}}, boundary: {sides}}}\n"
         bodies, boundaries = bodies + body, boundaries + boundary
-        loads += f'  - {{body: {name}, where: {{side: top, x: [{at}, {at + 0.2}]}}, traction: [0, "-1e4*exp(-((t-{t0})/{a})^2)"]}}\n'
+        loads += f'  - {{body: {name}, where: {{side: top, x: [{at - wide * points}, {at + wide}]}}, traction: [0, "-1e4*exp(-((t-{t0})/{a})^2)"]}}\n'
         for place, (x, y) in PLACES.items():
             for d in "xy":
                 monitors += f"  - {{name: {name}_{place}_{d}, body: {name}, value: displacement.{d}, at: [{at + x}, {y}]}}\n"
-    text = (f"abut: 1\ntitle: line load\nspace: plane-strain\ntime: {{end: {end}, cfl: 0.9}}\n" + GROUND + "bodies:\n" + bodies + "loads:\n" + loads + "boundaries:\n" + boundaries
+    text = (f"abut: 1\ntitle: line load\nspace: plane-strain\ntime: {{end: {end}, cfl: 0.9}}\n" + grid + GROUND + "bodies:\n" + bodies + "loads:\n" + loads + "boundaries:\n" + boundaries
             + "monitors:\n" + monitors)
     rows = run(build, text, folder)
     print("| place | " + " | ".join(f"{k}: error | at the end" for k in kinds) + " | large: peak | at the end |\n" + "| --- " * (2 * len(kinds) + 3) + "|")
@@ -202,7 +208,7 @@ def line_load(build, folder, duration, end, h, large_size, kinds):
     return found
 
 
-KINDS = {"fixed": "fixed", "viscous": "viscous", "viscoelastic": "viscoelastic, r_b: 4"}
+KINDS = {"fixed": "fixed", "viscous": "viscous", "viscoelastic": "viscoelastic, r_b: 4", "points_viscous": "viscous", "points_viscoelastic": "viscoelastic, r_b: 4"}
 
 
 def pulse(build, folder):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A line load on 4 x 4 m of ground against a larger piece: waves along the surface and below leave through dashpots and springs; after a slow pulse dashpots alone have
+"""A line load on 4 x 4 m of ground, of elements and of points, against a larger piece: waves along the surface and below leave through dashpots and springs; after a slow pulse dashpots alone have
 drifted away and springs have come back. usage: test_line_load.py BUILD"""
 import sys
 import tempfile
@@ -18,11 +18,13 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         fast = line_load(build, folder, 0.03, 0.12, 0.125, 9, KINDS)
         slow = line_load(build, folder, 0.3, 0.8, 0.2, 24, KINDS)
-    for place in PLACES:
-        hold(fast["viscous", place][0] < 0.6 * fast["fixed", place][0], f"fast, {place}: dashpots come half as near as a fixed side")
-        hold(slow["viscous", place][1] > 0.3, f"slow, {place}: dashpots alone drift")
-        hold(slow["viscoelastic", place][1] < 0.02, f"slow, {place}: springs come back")
-        hold(slow["viscoelastic", place][0] < 0.6 * slow["fixed", place][0], f"slow, {place}: springs come half as near as a fixed side")
+    for way in ("", "points_"):
+        for place in PLACES:
+            dashpots, springs = way + "viscous", way + "viscoelastic"
+            hold(fast[dashpots, place][0] < 0.6 * fast["fixed", place][0], f"fast, {place}, {dashpots}: dashpots come half as near as a fixed side")
+            hold(slow[dashpots, place][1] > 0.3, f"slow, {place}, {dashpots}: dashpots alone drift")
+            hold(slow[springs, place][1] < 0.02, f"slow, {place}, {springs}: springs come back")
+            hold(slow[springs, place][0] < 0.6 * slow["fixed", place][0], f"slow, {place}, {springs}: springs come half as near as a fixed side")
     print("\n".join("MISSED " + line for line in wrong))
     sys.exit(1 if wrong else 0)
 
