@@ -27,6 +27,14 @@ def elements(side, bottom, velocity):
             "mesh": {"box": [[0, bottom], [side, bottom + side]], "elements": [side, side], "type": "q4"}}
 
 
+def meshed(side, steps, kind="q4"):
+    """One block of elements alone, in steps that all types bear."""
+    scene = base(side, steps)
+    scene["time"] = {"end": steps * 2e-4, "dt": 2e-4}
+    scene["bodies"] = {"block": elements(side, 0, [f"0.5*sin(pi*x/{side})", f"0.5*cos(2*pi*x/{side})"])}
+    return put(scene, "bodies.block.mesh.type", kind)
+
+
 def two(side, steps, apart=0, first="points"):
     """Two blocks, the upper one coming down and along; `apart`: cells between them. No contact is asked for."""
     scene = base(side, steps)
@@ -36,12 +44,18 @@ def two(side, steps, apart=0, first="points"):
     return scene
 
 
-def staged(scene):
+def staged(scene, **settings):
     """A copy with its time as the one stage."""
     scene = copy.deepcopy(scene)
     time = scene.pop("time")
-    scene["stages"] = [{"name": "all", "duration": time["end"], "dt": time["dt"]}]
+    scene["stages"] = [{"name": "all", "duration": time["end"], "dt": time["dt"]} | settings]
     return scene
+
+
+def bounded(scene, plugin, side="bottom", **settings):
+    """A copy with one boundary plugin more, on a side of the block."""
+    entry = {"on": "block", "where": {"side": side}, "boundary": plugin} | settings
+    return put(scene, "boundaries", scene.get("boundaries", []) + [entry])
 
 
 def put(scene, path, value):
@@ -68,6 +82,8 @@ def switched_off(side, steps):
     one, apart = base(side, steps), two(side, steps, 12)
     touch = touching(two(side, steps), response="coulomb", friction=0.3)
     contact = touch["contact"][0]
+    segments = touching(two(side, steps), algorithm="point-to-segment", response="coulomb", friction=0.3)
+    viscous = bounded(one, "viscous")
     return [
         pair("`gravity: [0, 0]`", one, put(one, "gravity", [0, 0])),
         pair("`damping: {local: 0}`", one, put(one, "damping", {"local": 0})),
@@ -79,9 +95,19 @@ def switched_off(side, steps):
         pair("`watchdog: {stop: false}`", one, put(one, "watchdog", {"stop": False})),
         pair("`boundaries: []`", one, put(one, "boundaries", [])),
         pair("`stages`, one of them, in place of `time`", one, staged(one)),
+        pair("`loads: []`", one, put(one, "loads", [])),
+        pair("`contact: []`", one, put(one, "contact", [])),
+        pair("`monitors: []`, `expect: []`", one, put(put(one, "monitors", []), "expect", [])),
+        pair("`checked: false`", one, put(one, "checked", False)),
+        pair("`space: plane-strain`", one, put(one, "space", "plane-strain")),
         pair("a `trade` block", one, put(one, "trade", {"tolerance": 0.01})),
+        pair("an `extremes` block", one, put(one, "extremes", {"vary": [{"name": "E", "set": "materials.rubber.E", "from": 1e7, "to": 1e8}]})),
         pair("empty grid x 1000", one, put(one, "grid.to", [(side + 24) * 32, (2 * side + 24) * 32])),
         pair("a contact of bodies 12 cells apart", apart, touching(apart, response="coulomb", friction=0.3)),
+        pair("a boundary with `at: points`, `hold: false`", viscous, bounded(one, "viscous", at="points", hold=False)),
+        pair("a stage with `damping: {local: 0}`", staged(one), staged(one, damping={"local": 0})),
+        pair("elements with `f_bar: false`, `fix: []`", meshed(side, steps), put(put(meshed(side, steps), "bodies.block.mesh.f_bar", False), "bodies.block.fix", [])),
+        pair("point-to-segment with `touching: centre`, `passes: both`", segments, put(segments, "contact", [segments["contact"][0] | {"touching": "centre", "passes": "both"}])),
         pair("a contact with `adhesion: 0, shear_cap: 0, recovery: 0`", touch, put(touch, "contact", [contact | {"adhesion": 0, "shear_cap": 0, "recovery": 0}])),
     ]
 
@@ -91,21 +117,45 @@ def switched_on(side, steps):
     one, touch, apart = base(side, steps), two(side, steps), two(side, steps, 12)
     body = "bodies.block."
     plastic = {"model": "von-mises", "E": 1e8, "nu": 0.3, "density": 1000}
+    at_axis = put(one, "grid.from", [0, -8])
+    soil = {"E": 1e8, "nu": 0.3, "density": 1000}
+    clay = {"model": "modified-cam-clay", "kappa": 0.01, "lambda": 0.1, "M": 1, "nu": 0.3, "void_ratio": 1, "pressure": 1e5, "density": 1000}
+    record = [[0, 0], [1, 0.1]]
     traction = {"body": "block", "where": {"side": "top"}, "traction": [0, "-1e4*min(t, 1)"]}
     stress = {"every": 1e-2, "fields": ["stress", "velocity"]}
     rows = [
         ("materials", "von Mises that stays elastic", one, put(one, "materials.rubber", plastic | {"yield": 1e30})),
         ("materials", "von Mises that yields everywhere", one, put(one, "materials.rubber", plastic | {"yield": 1})),
         ("materials", "neo-Hookean", one, put(one, "materials.rubber.model", "neo-hookean")),
+        ("materials", "Tresca that yields everywhere", one, put(one, "materials.rubber", soil | {"model": "tresca", "cohesion": 1})),
+        ("materials", "Mohr-Coulomb that yields everywhere", one, put(one, "materials.rubber", soil | {"model": "mohr-coulomb", "cohesion": 1, "friction": 0.5})),
+        ("materials", "Drucker-Prager that yields everywhere", one, put(one, "materials.rubber", soil | {"model": "drucker-prager", "cohesion": 1, "friction": 0.5})),
+        ("materials", "modified Cam clay under 100 kPa", one, put(put(one, "materials.rubber", clay), "bodies.block.initial", {"stress": [-1e5, -1e5, -1e5, 0]})),
         ("loads", "gravity", one, put(one, "gravity", [0, -9.81])),
         ("loads", "local damping", one, put(one, "damping", {"local": 0.1})),
         ("loads", "body force, a formula of t, x, y", one, put(one, "bodies.block.body_force", ["sin(x+t)", "cos(y)"])),
-        ("loads", "a viscous boundary on one side", one, put(one, "boundaries", [{"on": "block", "where": {"side": "bottom"}, "boundary": "viscous"}])),
         ("loads", "traction on one side", one, put(one, "loads", [traction])),
+        ("boundaries", "`viscous` on one side", one, bounded(one, "viscous")),
+        ("boundaries", "`viscous`, `at: nodes`", one, bounded(one, "viscous", at="nodes")),
+        ("boundaries", "`viscous` that holds the stress (`hold: true`)", bounded(one, "viscous"), bounded(one, "viscous", hold=True)),
+        ("boundaries", "`viscoelastic` on one side", one, bounded(one, "viscoelastic", r_b=side)),
+        ("boundaries", "`pressure` on one side", one, bounded(one, "pressure", "top", pressure=1e4)),
+        ("boundaries", "`base-motion`, rigid, on one side", one, bounded(one, "base-motion", velocity=record)),
+        ("boundaries", "and `free-field` on another", bounded(one, "base-motion", velocity=record),
+         bounded(bounded(one, "base-motion", velocity=record), "free-field", "left", velocity=record, spacing=1)),
+        ("boundaries", "`viscous` on one side of elements", meshed(side, steps), bounded(meshed(side, steps), "viscous")),
+        ("stages", "local damping", staged(one), staged(one, damping={"local": 0.1})),
+        ("stages", "kinetic damping", staged(one), staged(one, damping={"kinetic": True})),
+        ("stages", "gravity that grows, looked at for rest (`until`)", staged(put(one, "gravity", [0, -9.81])),
+         staged(put(one, "gravity", [0, -9.81]), gravity="ramp", until={"unbalanced_force": 1e-9, "missed": "warn"})),
+        ("stages", "`initial: {stress: K0}`", put(one, "gravity", [0, -9.81]), put(put(one, "gravity", [0, -9.81]), "bodies.block.initial", {"stress": "K0"})),
         ("results", "a row of history at every step (the ledger added up)", one, put(one, "history", {"every": 1})),
         ("results", "and a monitor, over all points", put(one, "history", {"every": 1}),
          put(put(one, "history", {"every": 1}), "monitors", [{"name": "s", "body": "block", "value": "stress.yy", "over": "max"}])),
         ("results", "a frame with stress and velocity every 10 steps", one, put(one, "output", stress)),
+        ("results", "a checkpoint every 10 steps", one, put(one, "checkpoint", {"steps": 10})),
+        ("results", "`checked: true`", one, put(one, "checked", True)),
+        ("space", "`space: axisymmetric`", at_axis, put(at_axis, "space", "axisymmetric")),
         ("points", "`f_bar: cell`", one, put(one, body + "f_bar", "cell")),
         ("points", "`f_bar: patch`", one, put(one, body + "f_bar", "patch")),
         ("points", "`basis: linear`", one, put(one, body + "basis", "linear")),
@@ -115,10 +165,16 @@ def switched_on(side, steps):
         ("points", "`update: usl`", one, put(one, body + "update", "usl")),
         ("points", "`update: usf`", one, put(one, body + "update", "usf")),
         ("points", "`update: usavg`", one, put(one, body + "update", "usavg")),
+        ("points", "`transfer: {flip: 0.99}`", one, put(one, body + "transfer", {"flip": 0.99})),
         ("points", "`transfer: apic`", one, put(one, body + "transfer", "apic")),
         ("points", "`transfer: {xpic: 2}`", one, put(one, body + "transfer", {"xpic": 2})),
         ("points", "`transfer: {fmpm: 2}`", one, put(one, body + "transfer", {"fmpm": 2})),
         ("points", "`surface: points`, nothing that touches", one, put(one, body + "surface", "points")),
+        ("elements", "q4 with `f_bar`", meshed(side, steps), put(meshed(side, steps), "bodies.block.mesh.f_bar", True)),
+        ("elements", "q4r in place of q4", meshed(side, steps), meshed(side, steps, "q4r")),
+        ("elements", "q6 in place of q4", meshed(side, steps), meshed(side, steps, "q6")),
+        ("elements", "q8r in place of q4, as many elements", meshed(side, steps), meshed(side, steps, "q8r")),
+        ("elements", "q8 in place of q4, as many elements", meshed(side, steps), meshed(side, steps, "q8")),
         ("bodies", "a second body of as many points, far away", one, apart),
         ("bodies", "a second body of as many q4 elements, far away", one, two(side, steps, 12, "elements")),
     ]
@@ -132,6 +188,13 @@ def switched_on(side, steps):
         (names, "penalty in place of it", frictionless, touching(touch, response="penalty")),
         (names, "`surface: points` on both", friction, put(put(friction, "bodies.lower.surface", "points"), "bodies.upper.surface", "points")),
         (names, "the contact points in each tenth step's frame", put(friction, "output", stress), put(friction, "output", stress | {"contact": True})),
+    ]
+    segments = touching(touch, algorithm="point-to-segment", response="coulomb", friction=0.3)
+    names = "points on points by point-to-segment"
+    rows += [
+        (names, "friction", touch, segments),
+        (names, "`touching: outline` in place of `centre`", segments, touching(touch, algorithm="point-to-segment", response="coulomb", friction=0.3, touching="outline")),
+        (names, "`passes: first` in place of `both`", segments, touching(touch, algorithm="point-to-segment", response="coulomb", friction=0.3, passes="first")),
     ]
     mixed = two(side, steps, 0, "elements")
     rows += [

@@ -1,5 +1,5 @@
 #!/bin/bash
-# cost: 3
+# cost: 4
 # Pay only for the scene: a key that says no leaves plan and results as they are without it, and a feature that is on is seen in the plan. test_cost.sh BUILD
 set -u
 build=$(realpath "${1:?the build folder}")
