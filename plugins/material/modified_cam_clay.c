@@ -139,6 +139,7 @@ static bool advance(const law *l, const double strain[6], clay *c) {
     const double a = find_angle(l, c, &s, fmin(neutral, half_pi), fmax(neutral, half_pi));
     const double X = l->kappa / l->lambda * (s.log_ratio - 2.0 * log(cos(0.5 * a)));
     const double pc = c->pc * exp(X), half = cos(0.5 * a), p1 = fmax(pc * half * half, least), q1 = 0.5 * l->M * pc * sin(a);
+    if (!(pc < LARGEST && p1 < LARGEST)) return false;
     const double slid = fmax(q - q1, 0.0) / (3.0 * G), work = p1 * (l->lambda - l->kappa) * X / mean_v + q1 * slid;
     for (int k = 0; k < 6; k++) c->deviator[k] = q > 0.0 ? trial[k] * (q1 / q) : 0.0;
     c->p = p1;
@@ -196,9 +197,9 @@ static int update(void *self, ab_batch *b) {
             b->dissipation[i] = 0.0;
             b->flag[i] = 1;
             status = -1;
-            l->host->message(
-                l->host->context,
-                "the strain increment of a step is not a number, or compresses the clay below the volume of its grains (void ratio 0)");
+            l->host->message(l->host->context, "the strain increment of a step is not a number, or compresses the clay below the volume of "
+                                               "its grains (void ratio 0) or to "
+                                               "stresses above 1e150 Pa");
         }
         if (b->wave_speed) {
             const double mean = (b->stress1[i] + b->stress1[ld + i] + b->stress1[2 * ld + i]) / 3;
@@ -254,8 +255,10 @@ static const ab_param params[] = {
     {"nu", "1", "Poisson's ratio, with a shear modulus in proportion to the bulk modulus; this or G", NULL, AB_REAL,
      AB_MIN_OPEN | AB_MAX_OPEN, 0, -1, 0.5},
     {"void_ratio", "1", "void ratio at the start", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
-    {"pressure", "Pa", "pressure at the start, the same all around; walls or loads must bear it. Where the scene gives the stress at the start (initial), that is taken", NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN,
-     0, 0, INFINITY},
+    {"pressure", "Pa",
+     "pressure at the start, the same all around; walls or loads must bear it. Where the scene gives the stress at the start (initial), "
+     "that is taken",
+     NULL, AB_REAL, AB_REQUIRED | AB_MIN_OPEN, 0, 0, INFINITY},
     {"overconsolidation", "1", "largest pressure that the clay has borne, over the pressure at the start", NULL, AB_REAL, 0, 1, 1,
      INFINITY},
 };

@@ -1,5 +1,6 @@
 /* test_clay.c: modified Cam clay: isotropic lines, drained and undrained paths to the critical state against closed forms and against
  * rates integrated by Runge and Kutta, the return from random states, closed cycles, what is refused. */
+#include "effort.h"
 #include "soil_bench.h"
 
 static const double KAPPA = 0.05, LAMBDA = 0.2, SLOPE = 1.0, VOID = 1.2, PRESSURE = 1e5, SHEAR = 4e6;
@@ -224,7 +225,7 @@ static void test_clay_returns_to_its_surface_from_anywhere(void **state) {
                 soil_bench *b = soil_bench_make("modified-cam-clay", SOIL({"kappa", kappa}, {"lambda", lambda}, {"M", M},
                                                                           {constant ? "G" : "nu", constant ? 1e7 : soils[k][3]},
                                                                           {"void_ratio", 1}, {"pressure", 1e5}));
-                for (int round = 0; round < 100; round++) {
+                for (int round = 0; round < EFFORT(1000, 50); round++) {
                     const size_t ld = SOIL_MOST;
                     for (size_t i = 0; i < ld; i++) {
                         const double size = pow(10, soil_uniform(-9, round % 5 == 0 ? 0.5 : -2)), pc = 1e5 * pow(10, soil_uniform(-2, 2));
@@ -254,7 +255,7 @@ static void test_clay_returns_to_its_surface_from_anywhere(void **state) {
                         assert_true(isfinite(b->speed[i]) && b->speed[i] > 0 && b->dissipation[i] >= 0 && isfinite(b->dissipation[i]));
                         if (b->flag[i]) {
                             refused++;
-                            assert_true(v <= 1.0 + 1e-9);
+                            assert_true(v <= 1.0 + 1e-9 || (1 + b->state0[ld + i] - v) / kappa > 300); /* or p grows by exp(300): absurd */
                             continue;
                         }
                         const double p = -(s[0] + s[1] + s[2]) / 3, x = s[0] + p, y = s[1] + p, z = s[2] + p, pc = b->state1[i];
@@ -276,7 +277,7 @@ static void test_clay_returns_to_its_surface_from_anywhere(void **state) {
                 }
                 soil_bench_close(b);
             }
-    assert_true(total > 100000 && plastic > 20000 && dry > 2000 && refused > 10 && refused < total / 10);
+    assert_true(total > EFFORT(1000000, 50000) && plastic > total / 5 && dry > total / 50 && refused > 5 && refused < total / 10);
 }
 
 static void refused(const soil_setting *settings, const char *why) {
