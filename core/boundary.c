@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-
 static const double STILL =
     1e-10; /* of the largest velocity of an edge, or of what its impulse alone would give it: a round that changes none by more was the last */
 enum { MOST_ROUNDS = 500 };
@@ -79,6 +78,7 @@ static ab_status ask(const ab_boundaries *all, ab_boundary *b, const ab_step *st
     const bool began = b->active;
     b->active =
         !(step->stage < 64 && (b->spec->absent >> step->stage & 1u)) && (!step->settling || b->spec->loaded->class_.gives & AB_GIVE_MOTION);
+    b->begins = b->active && !began;
     if (!b->active) return AB_OK;
     AB_TRY(b->domain->ops->edges(b->domain, b->number, step, &b->list, report));
     b->domain->ops->dofs(b->domain, &b->dofs);
@@ -138,7 +138,7 @@ static ab_status ask(const ab_boundaries *all, ab_boundary *b, const ab_step *st
     }
     for (size_t e = 0; e < count; ++e)
         for (size_t c = 0; c < 2; ++c) {
-            b->traction[c * ld + e] += b->held[c * ld + e];
+            if (!b->list.own_force) b->traction[c * ld + e] += b->held[c * ld + e];
             if (step->settling && !isnan(b->prescribed[c * ld + e])) b->prescribed[c * ld + e] = 0.0;
         }
     return AB_OK;
@@ -146,22 +146,29 @@ static ab_status ask(const ab_boundaries *all, ab_boundary *b, const ab_step *st
 
 /* ---- impulses ------------------------------------------------------------------------------------------------------------ */
 
+/* Impulse, N s, of what an edge carries by its nodes. */
+static double carried(const ab_boundary *b, size_t e, size_t c, double dt) { return b->list.own_force ? dt * b->held[c * b->ld + e] : 0.0; }
+
 /* Tractions as they are at the start, less what damping is expected to take: as it took in the last step. */
 static void begin_impulses(ab_boundary *b, const ab_step *step) {
     const uint32_t gives = b->spec->loaded->class_.gives;
+    const double dt = ab_boundary_acts(step);
     const size_t ld = b->ld;
     for (size_t e = 0; e < b->count; ++e) {
         const double area = b->list.area[e];
         double j[2] = {0.0, 0.0}, s[2];
         for (size_t c = 0; c < 2; ++c) {
-            if (!ab_boundary_holds(b, e, c)) j[c] = step->dt * area * (b->traction[c * ld + e] - b->given[c][e]);
+            if (!ab_boundary_holds(b, e, c)) {
+                j[c] = dt * area * (b->traction[c * ld + e] - b->given[c][e]);
+                j[c] += carried(b, e, c, dt);
+            }
             b->impulse[c * ld + e] = j[c];
         }
         push(b, e, j);
         if (!(gives & AB_GIVE_DAMPING)) continue;
         response_of(b, e, s);
         double t[3];
-        tensor_of(b, b->damping, e, 0.5 * step->dt * area, t);
+        tensor_of(b, b->damping, e, 0.5 * dt * area, t);
         const double xx = 1.0 + t[0] * s[0], xy = t[2] * s[1], yx = t[2] * s[0], yy = 1.0 + t[1] * s[1], det = xx * yy - xy * yx;
         b->answer[e] = yy / det, b->answer[ld + e] = -xy / det, b->answer[2 * ld + e] = -yx / det, b->answer[3 * ld + e] = xx / det;
     }
@@ -175,10 +182,12 @@ static double relax(ab_boundary *b, const ab_step *step, size_t e, bool motion_o
     velocity_now(b, e, v);
     if (!motion_only && (gives & AB_GIVE_DAMPING)) {
         double t[3];
-        const double area = step->dt * b->list.area[e], change[2] = {v[0] - b->velocity[e], v[1] - b->velocity[ld + e]};
+        const double dt = ab_boundary_acts(step), area = dt * b->list.area[e],
+                     change[2] = {v[0] - b->velocity[e], v[1] - b->velocity[ld + e]};
         tensor_of(b, b->damping, e, 0.5 * area, t);
-        const double rest[2] = {area * b->traction[e] - t[0] * change[0] - t[2] * change[1] - b->impulse[e],
-                                area * b->traction[ld + e] - t[2] * change[0] - t[1] * change[1] - b->impulse[ld + e]};
+        double rest[2] = {area * b->traction[e] - t[0] * change[0] - t[2] * change[1] - b->impulse[e],
+                          area * b->traction[ld + e] - t[2] * change[0] - t[1] * change[1] - b->impulse[ld + e]};
+        for (size_t c = 0; c < 2; ++c) rest[c] += carried(b, e, c, dt);
         j[0] = b->answer[e] * rest[0] + b->answer[ld + e] * rest[1];
         j[1] = b->answer[2 * ld + e] * rest[0] + b->answer[3 * ld + e] * rest[1];
     }
@@ -207,7 +216,8 @@ static void rounds(ab_boundaries *all, const ab_step *step, bool motion_only) {
 }
 
 ab_status ab_boundaries_apply(ab_boundaries *all, const ab_step *step, ab_report *report) {
-    bool springs = false;
+    const double dt = ab_boundary_acts(step);
+    bool springs = false, takes_over = false;
     for (size_t k = 0; k < all->count; ++k) {
         const bool began = all->list[k].active;
         AB_TRY(ask(all, all->list + k, step, report));
@@ -216,7 +226,9 @@ ab_status ab_boundaries_apply(ab_boundaries *all, const ab_step *step, ab_report
             if (!began) AB_TRY(ab_boundary_refuse_two(all, all->list + k, report));
         }
         springs = springs || (all->list[k].spec->loaded->class_.gives & AB_GIVE_STIFFNESS);
+        takes_over = takes_over || (all->list[k].begins && all->list[k].list.own_force);
     }
+    if (takes_over) AB_TRY(ab_boundary_take_over(all, report));
     if (springs) AB_TRY(ab_boundary_note_springs(all, report));
     for (size_t k = 0; k < all->count; ++k)
         if (all->list[k].active) begin_impulses(all->list + k, step);
@@ -225,9 +237,10 @@ ab_status ab_boundaries_apply(ab_boundaries *all, const ab_step *step, ab_report
         ab_boundary *b = all->list + k;
         for (size_t c = 0; b->active && c < 2; ++c)
             for (size_t e = 0; e < b->count; ++e)
-                b->given[c][e] = b->list.area[e] > 0.0 && !ab_boundary_holds(b, e, c)
-                                     ? b->traction[c * b->ld + e] - b->impulse[c * b->ld + e] / (step->dt * b->list.area[e])
-                                     : 0.0;
+                b->given[c][e] =
+                    b->list.area[e] > 0.0 && !ab_boundary_holds(b, e, c)
+                        ? b->traction[c * b->ld + e] - (b->impulse[c * b->ld + e] - carried(b, e, c, dt)) / (dt * b->list.area[e])
+                        : 0.0;
     }
     return AB_OK;
 }
@@ -260,6 +273,8 @@ static void book(ab_boundaries *all, ab_boundary *b, const ab_step *step) {
             b->totals.spring += (t[0] * ux + t[2] * uy) * mean[0] + (t[2] * ux + t[1] * uy) * mean[1];
         }
     }
+    work *= step->dt /
+            ab_boundary_acts(step); /* for the whole of a step from rest, as that of all forces: bodies book the half that is too much */
     b->totals.work += work;
     b->totals.other = b->totals.work + b->totals.dashpot + b->totals.spring;
     all->taken[b->spec->body] -= work;
@@ -277,6 +292,7 @@ static void move_together(ab_boundary *b) {
 }
 
 void ab_boundaries_settle(ab_boundaries *all, const ab_step *step) {
+    const double dt = ab_boundary_acts(step);
     for (size_t k = 0; k < all->count; ++k) {
         ab_boundary *b = all->list + k;
         const size_t ld = b->ld;
@@ -289,9 +305,9 @@ void ab_boundaries_settle(ab_boundaries *all, const ab_step *step) {
             for (size_t c = 0; c < 2; ++c) {
                 b->moved[c * ld + e] = step->dt * v[c];
                 t->impulse[c] += b->impulse[c * ld + e];
-                t->force[c] += b->impulse[c * ld + e] / step->dt;
+                t->force[c] += b->impulse[c * ld + e] / dt;
             }
-            t->moment += (b->position[e] * b->impulse[ld + e] - b->position[ld + e] * b->impulse[e]) / step->dt;
+            t->moment += (b->position[e] * b->impulse[ld + e] - b->position[ld + e] * b->impulse[e]) / dt;
             t->area += b->list.area[e];
         }
         if (b->active && b->list.group > 1) move_together(b);

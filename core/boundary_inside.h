@@ -18,7 +18,8 @@ typedef struct ab_boundary {
     ab_edges view;            /* what the plugin sees */
     double *storage;          /* all the arrays of the view that the host fills or reads, and those below */
     bool active;              /* in this step; its displacements count from its first one */
-    double *held;             /* Pa, 2 rows: what it carries besides */
+    bool begins;              /* with this step */
+    double *held;             /* 2 rows: what it carries besides, Pa; N where the body says own_force */
     double *moved;            /* m, in the last step */
     double *base;             /* m/s, 2 rows: what of the velocity no dof's velocity of now has a part in */
     double *position, *displacement, *velocity, *traction, *damping, *stiffness, *prescribed, *state0, *state1;
@@ -46,6 +47,11 @@ static inline bool ab_boundary_holds(const ab_boundary *b, size_t e, size_t c) {
     return (b->spec->loaded->class_.gives & AB_GIVE_MOTION) && !isnan(b->prescribed[c * b->ld + e]);
 }
 
+/* s: how long forces act on velocities in a step: those of a body that was at rest at its start, and not half a step before, come up to its middle. */
+static inline double ab_boundary_acts(const ab_step *step) { return step->from_rest ? 0.5 * step->dt : step->dt; }
+
+/* boundary_hold.c: boundaries that begin with this step take over what bodies with own_force have out of balance at their edges. All have been asked. */
+ab_status ab_boundary_take_over(ab_boundaries *all, ab_report *report);
 /* Frequencies that springs can reach go to rate2. */
 ab_status ab_boundary_note_springs(ab_boundaries *all, ab_report *report);
 /* What moves an edge must be alone with it: an error where a side of the grid or a support holds it, too, */

@@ -94,7 +94,10 @@ typedef struct ab_edge_list {
      * by stresses that points average over more than reaches them; the mapped velocities that a step begins with know nothing of it. */
     const double *answer;
     const double *own_traction; /* Pa, 2 rows: what the body's stress pulls with there; where the boundary is to hold it, else NULL */
-    size_t group;               /* so many edges on end are shares of one piece of outline and have its displacement; 0: each is one */
+    /* N, pairs by dof: what pulls at the nodes in this step, by stress, loads and weight, boundaries and contact left out. Bodies whose edges hang on one dof each, where the
+     * boundary is to hold it; else NULL. */
+    const double *own_force;
+    size_t group; /* so many edges on end are shares of one piece of outline and have its displacement; 0: each is one */
 } ab_edge_list;
 
 /* Elements for results: how a body's points (nodes) hang together. */

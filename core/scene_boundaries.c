@@ -55,13 +55,10 @@ static void take_ways(ab_scene_reader *r, const ab_node *const *v, const char *w
                         "%s.at: springs of '%s' at nodes stand on nodes with next to no mass once the outline of a gimp body moves through "
                         "cells, and the stable step goes to nothing; use at: points, or basis linear",
                         where, boundary->loaded->class_.name);
-    boundary->hold = points && (gives & AB_GIVE_DAMPING) && (body->initial.kind != AB_INITIAL_NONE || (boundary->absent & 1u));
+    boundary->hold = (gives & AB_GIVE_DAMPING) && (body->initial.kind != AB_INITIAL_NONE || (boundary->absent & 1u));
     if (v[BOUNDARY_HOLD] == NULL || !ab_read_flag(&r->base, &key[BOUNDARY_HOLD], v[BOUNDARY_HOLD], where, &boundary->hold) ||
         !boundary->hold)
         return;
-    if (!points)
-        ab_report_error(r->base.report, v[BOUNDARY_HOLD]->mark, "%s.hold: not there yet on bodies of %s; leave it out", where,
-                        body->method);
     if (!(gives & AB_GIVE_TRACTION))
         ab_report_error(r->base.report, v[BOUNDARY_HOLD]->mark,
                         "%s.hold: '%s' prescribes motion, which holds whatever stands there; leave it out", where,

@@ -188,12 +188,13 @@ static const ab_key boundary[] = {
                      .help = "points: at the pieces of the outline, through the body's basis; nodes: at the nodes of the grid that these "
                              "pieces hang on, each with "
                              "its share of the surface and its own velocity; material-points"},
-    [BOUNDARY_HOLD] =
-        {"hold", AB_KEY_FLAG,
-         .help =
-             "true: it carries besides the traction with which the body's own stress stood there when it began to act, so that what was in "
-             "equilibrium stays so; default: true for plugins with dashpots on bodies of points that begin with a stress, or behind "
-             "another stage"},
+    [BOUNDARY_HOLD] = {"hold", AB_KEY_FLAG,
+                       .help =
+                           "true: it carries besides what the body's own stress pulls with there when it begins to act (on finite elements "
+                           "what each node has "
+                           "out of balance), so that what was in "
+                           "equilibrium stays so; default: true for plugins with dashpots on bodies that begin with a stress, or behind "
+                           "another stage"},
     [BOUNDARY_STAGES] = {"stages", AB_KEY_SECTION, .help = "name of a stage or list of names: it acts in these only; default: in all"},
 };
 SECTION(boundary, "boundaries[i]", boundary, "every setting that the plugin declares (`abut plugins show NAME`)",

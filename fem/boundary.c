@@ -18,6 +18,7 @@ typedef struct share { /* of a face in an edge */
 
 struct fem_edges {
     size_t boundary; /* of the scene */
+    bool hold;
     size_t count, ld, share_count;
     share *shares;  /* in the order of faces */
     double *rows;   /* ROWS x ld */
@@ -86,6 +87,7 @@ static ab_status create_one(fem_body *body, const fem_faces *faces, size_t bound
                                boundary, body->domain.spec->name);
     struct fem_edges *e = body->edges + body->edges_count++;
     e->boundary = boundary;
+    e->hold = spec->hold;
     AB_TRY(take_arrays(body, e, count, report));
     memset(last, 0, body->nodes * sizeof *last);
     for (size_t f = 0; f < faces->count; ++f) {
@@ -162,6 +164,7 @@ ab_status fem_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
                            .s_wave_speed = x + 7 * ld,
                            .start = e->start,
                            .dof = e->dof,
-                           .weight = e->weight};
+                           .weight = e->weight,
+                           .own_force = e->hold ? body->force : NULL};
     return AB_OK;
 }
