@@ -149,6 +149,12 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
             "time.dt %.4g s is %.3g times the stable limit %.4g s (%s): nothing could come of it; use dt below the limit, or "
             "cfl. (watchdog: {stop: false} lets it be tried)",
             scene->time_dt, scene->time_dt / s->critical_dt, s->critical_dt, s->limit);
+    if (scene->time_cfl > HOPELESS && scene->watch)
+        return ab_report_error(
+            report, scene->mark_time,
+            "time.cfl %g is so many times the stable limit: nothing could come of it; use a cfl below 1. (watchdog: {stop: "
+            "false} lets it be tried)",
+            scene->time_cfl);
     if (scene->time_dt > s->critical_dt)
         ab_report_warning(report, scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
                           scene->time_dt, s->critical_dt, s->limit);

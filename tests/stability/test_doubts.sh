@@ -25,6 +25,9 @@ expect check 2 '--set time: error: time.dt 2 s is [0-9.]+ times the stable limit
 expect plan 2 'error: time.dt 2 s is' $nodes 'time={end: end, dt: 2}'
 expect run 2 'error: time.dt 2 s is' $nodes 'time={end: end, dt: 2}'
 expect check 0 'warning: dt 2 s is above the stable limit' $nodes 'time={end: end, dt: 2}' 'watchdog={stop: false}'
+expect check 2 'error: time.cfl 3.1 is so many times the stable limit' $nodes time.cfl=3.1
+expect check 0 'warning: time.cfl 2.9 is above 1' $nodes time.cfl=2.9
+expect check 0 'warning: time.cfl 5 is above 1' $nodes time.cfl=5 'watchdog={stop: false}'
 expect check 0 'warning: dt 0.8 s is above the stable limit' $nodes 'time={end: end, dt: 0.8}'
 expect check 0 - $nodes 'time={end: end, dt: 0.5}'
 expect check 2 "error: time.dt: body 'block' moves [0-9.]+ cells in the first step" $nodes constants.drift=1000 'time={end: end, dt: 0.5}'
