@@ -38,6 +38,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
     mpm_light_destroy(body);
+    mpm_damp_destroy(body);
     mpm_share_destroy(body);
     mpm_trace_destroy(body->trace);
     mpm_surface_destroy(body->surface);
@@ -244,7 +245,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     if (step->measure) mpm_measure(body, step);
     if (step->damping > 0.0) {
         mpm_light_quiet(body);
-        body->energy.damping += mpm_grid_damp(body, step->damping);
+        mpm_damp(body, step);
     }
     mpm_light_follow(body);
     mpm_filter(body);
@@ -267,6 +268,7 @@ static ab_status remap(ab_domain *domain, const ab_step *step, ab_report *report
     mpm_light_remap(body);
     mpm_loads_work(body, step); /* what points gain from a nodal force is force x (mapped velocity before + after)/2, exactly */
     mpm_body_force_work(body, step);
+    if (step->damping > 0.0) mpm_damp_book(body);
     return AB_OK;
 }
 

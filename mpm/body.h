@@ -197,8 +197,9 @@ struct mpm_body {
     double *own;        /* OWN_RECORD * AB_TILE_NODES per tile */
     double *patches;    /* mpm_patch_doubles per tile with points */
     double *filter;     /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
+    double *damped;     /* m/s, a pair per node: its change by damping in this step; NULL: not kept */
     double *volumetric; /* VOLUMETRIC_RECORD * AB_TILE_NODES per tile; NULL without f_bar */
-    size_t own_capacity, filter_capacity, volumetric_capacity, patch_capacity, patch_count;
+    size_t own_capacity, filter_capacity, damped_capacity, volumetric_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
     double last_limit;  /* s, of the step */
@@ -301,20 +302,26 @@ void mpm_grid_filter_start(mpm_body *);                                         
 void mpm_grid_filter_assemble(mpm_body *); /* the rest loses what came back, the sum gains the rest */
 void mpm_grid_fetch_volumetric(const mpm_body *, size_t tile, int from, double *pairs); /* a patch of two numbers of the records of f_bar */
 void mpm_grid_add_pairs(const mpm_body *, size_t tile, double *sum);                    /* what patches of pairs hold of its own nodes */
-double mpm_grid_damp(mpm_body *, double factor);                                        /* after contact; energy taken, J */
 void mpm_grid_limit_light(mpm_body *); /* USL: light nodes take their old velocity for the strain */
 
 /* light_nodes.c: where kernel->ties_light is not set, nothing is done and no tie is there */
 bool mpm_light_reserve(mpm_body *, size_t tiles); /* false: no memory */
 ab_status mpm_light_tie(mpm_body *, ab_report *); /* after mpm_grid_assemble: which nodes are light; their masses and momenta to others */
 void mpm_light_follow(mpm_body *);                /* after others have changed the velocities of nodes */
-void mpm_light_quiet(mpm_body *);                 /* before mpm_grid_damp: they are not damped on their own */
+void mpm_light_quiet(mpm_body *);                 /* before mpm_damp: they are not damped on their own */
 void mpm_light_remap(mpm_body *);                 /* after mpm_grid_assemble_remap */
 void mpm_light_filter(mpm_body *, double *back);  /* what came back to the nodes (pairs), each by its own mass */
 const mpm_tie *mpm_light_tie_of(const mpm_body *, uint32_t dof); /* NULL: the node is a degree of freedom */
 /* Nodes that a light one goes by in its place, with their weights; the new count. Room for MPM_LIGHT_MORE more. */
 size_t mpm_light_expand(const mpm_body *, uint32_t *dof, double *weight, size_t count);
 void mpm_light_destroy(mpm_body *);
+
+/* damping.c */
+bool mpm_damp_reserve(mpm_body *, size_t tiles); /* nothing where the scene has no local damping; false: no memory */
+void mpm_damp(mpm_body *, const ab_step *);      /* after contact, before finish */
+void mpm_damp_book(mpm_body *);                  /* once velocities are mapped back: what it has taken from the points */
+size_t mpm_damp_bytes(const mpm_body *);
+void mpm_damp_destroy(mpm_body *);
 
 /* loads.c */
 ab_status mpm_loads_create(mpm_body *, const ab_fill *, ab_report *);

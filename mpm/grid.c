@@ -199,25 +199,6 @@ void mpm_grid_filter_assemble(mpm_body *body) {
 
 static const double LIGHT = 1e-4; /* of a point's mass: a node with less is light */
 
-/* Local non-viscous damping (Cundall 1987): against the velocity, in proportion to the force out of balance, here all that changed the node's velocity
- * in this step, contact and sides included; so a body at rest on another is not held up by it. It never turns a velocity round. Light nodes are
- * left alone: a finite stress throws them about by any amount, which the points hardly see. Returns the energy taken, J. */
-double mpm_grid_damp(mpm_body *body, double factor) {
-    double taken = 0.0;
-    for (size_t n = 0; n < body->tile_count * AB_TILE_NODES; ++n) {
-        double *own = body->own + n * OWN_RECORD;
-        if (own[OWN_MASS] < LIGHT * body->point_mass) continue;
-        for (int c = 0; c < 2; ++c) {
-            const double old = own[OWN_OLD + c], v = own[OWN_VELOCITY + c];
-            const double change = -copysign(fmin(factor * fabs(v - old), fabs(v)), v);
-            own[OWN_VELOCITY + c] = v + change;
-            const double mass = body->tie_count && own[OWN_INVERSE + c] > 0.0 ? 1.0 / own[OWN_INVERSE + c] : own[OWN_MASS];
-            taken -= mass * change * 0.5 * (old + v + change);
-        }
-    }
-    return taken;
-}
-
 /* A node with less than LIGHT of a point's mass is accelerated without bound by a finite stress; its momentum has gone to the points already, so the
  * strain may take the velocity it had before. Only USL asks for it: USF and MUSL strain with momentum over mass, an average that is bounded. */
 void mpm_grid_limit_light(mpm_body *body) {

@@ -42,7 +42,7 @@ void mpm_plan(const ab_domain *domain, ab_plan_body *p) {
                body->back_capacity * 16 * AB_TILE_NODES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) +
                (body->domain.spec->has_force ? body->block_capacity * 128 : 0) + mpm_edges_bytes(body) + mpm_outline_bytes(body->outline) +
-               sizeof *body;
+               mpm_damp_bytes(body) + sizeof *body;
     p->bytes_per_point = 8 * (size_t)body->rows.count + 8;
     snprintf(p->fields, sizeof p->fields, "position, velocity, next position, mass, volume, stress%s%s%s%s%s%s",
              body->rows.extent >= 0 ? ", domain extent" : "", body->rows.half >= 0 ? ", domain half sizes" : "",
