@@ -7,6 +7,7 @@
 #include "core/vector.h"
 
 static const double DEEP = 0.01, CROWDED = 1.1; /* of a cell, of a cell's volume: less is no overlap to speak of */
+static const double FULL = 1.02;                /* of a cell's volume: what bodies side by side fill, as the points in elements have it */
 
 /* ---- points of one body inside the outline of the other ------------------------------------------------------------------------------ */
 
@@ -173,10 +174,18 @@ static double most_crowded(const ab_scene *scene, const contact_pair *pair) {
     return most;
 }
 
-static double deepest_point(const ab_points *p) {
+/* The deepest penetration, m, 0 or more; *which: of that point, if there is one. */
+static double deepest_of(const ab_points *p, size_t *which) {
     double deepest = 0.0;
-    for (size_t i = 0; i < p->count; ++i) deepest = ab_larger(deepest, -p->gap[i]);
+    *which = 0;
+    for (size_t i = 0; i < p->count; ++i)
+        if (-p->gap[i] > deepest) deepest = -p->gap[i], *which = i;
     return deepest;
+}
+
+static double deepest_point(const ab_points *p) {
+    size_t which;
+    return deepest_of(p, &which);
 }
 
 /* With surfaces every point of a body is looked for in the other, however deep: contact itself only sees those near a face. */
@@ -211,7 +220,21 @@ static bool warn_of_points_inside(const ab_scene *scene, const contact_pair *pai
 void contact_warn_of_overlap(const ab_scene *scene, const contact_pair *pair, ab_report *report) {
     const double h = pair->points.view.cell;
     if (pair->broad && warn_of_points_inside(scene, pair, report)) return;
-    if (deepest_point(&pair->points.view) <= DEEP * h && most_crowded(scene, pair) <= CROWDED * h * h) return;
+    const ab_points *p = &pair->points.view;
+    size_t which;
+    const double deepest = deepest_of(p, &which), crowded = most_crowded(scene, pair);
+    if (deepest <= DEEP * h && crowded <= CROWDED * h * h) return;
+    if (!pair->broad && crowded > 0.0 && crowded <= FULL * h * h) { /* nowhere is there more of them than there is room for */
+        ab_report_warning(report, pair->spec->mark,
+                          "bodies '%s' and '%s' fit into each other near (%.6g, %.6g) m, by a corner in a corner or one thinner than two "
+                          "cells between two parts "
+                          "of the other: '%s' sees them %.3g m deep in each other there, and cannot tell on which side each is; use "
+                          "point-to-segment, or a "
+                          "smaller cell. (If they are drawn into each other, draw them side by side: contact does not push them apart)",
+                          pair->a->spec->name, pair->b->spec->name, p->position[which] + scene->grid_from[0],
+                          p->position[p->ld + which] + scene->grid_from[1], pair->spec->finder->class_.name, deepest);
+        return;
+    }
     ab_report_warning(report, pair->spec->mark,
                       "bodies '%s' and '%s' overlap at the start, and stay so: contact does not push them apart; draw them side by side",
                       pair->a->spec->name, pair->b->spec->name);

@@ -12,16 +12,13 @@ static inline double smaller(double a, double b) { return b < a || a != a ? b : 
 
 typedef struct clearance {
     double angle, distance, slope; /* rad, m, m per rad */
-    int sharp;                     /* both bodies reach furthest by what has no breadth: a piece of an outline, or its end */
 } clearance;
-
-static const double FLAT = 1e-9; /* determinant of an extent over its trace squared */
 
 /* Distance along direction (c, s) at `angle` between the material of both bodies near node i (negative: overlap) and how it changes with the angle: what the two
  * points that reach furthest say. Over all directions the largest distance belongs to the direction of closest approach. Two dimensions. */
 static clearance look_towards(const ab_trace *a, const ab_trace *b, size_t i, double angle, double c, double s) {
     const double cc = c * c, ss = s * s, cs = 2.0 * c * s;
-    clearance seen = {.angle = angle, .sharp = 1};
+    clearance seen = {.angle = angle};
     for (int side = 0; side < 2; ++side) {
         const ab_trace *t = side ? b : a;
         const double sign = side ? -1.0 : 1.0;
@@ -35,8 +32,6 @@ static clearance look_towards(const ab_trace *a, const ab_trace *b, size_t i, do
         }
         const size_t k = furthest;
         const double half = sqrt(larger(cc * xx[k] + ss * yy[k] + cs * xy[k], 0.0));
-        const double spread = xx[k] + yy[k];
-        seen.sharp = seen.sharp && xx[k] * yy[k] - xy[k] * xy[k] <= FLAT * spread * spread;
         seen.distance -= far;
         seen.slope -= sign * (y[k] * c - x[k] * s) + (half > 0.0 ? (c * s * (yy[k] - xx[k]) + (cc - ss) * xy[k]) / half : 0.0);
     }
@@ -48,8 +43,9 @@ static clearance look_along(const ab_trace *a, const ab_trace *b, size_t i, doub
 }
 
 /* The largest distance near a direction: uphill until the slope turns, then to where the tangents of both ends meet, until the distance there is what they
- * promise. With radii of curvature r_a and r_b where they reach furthest, the second derivative is -distance - r_a - r_b: between sharp outlines that overlap the distance
- * is more than its tangents promise until both meet at the top. */
+ * promise. With radii of curvature r_a and r_b where they reach furthest, the second derivative is -distance - r_a - r_b: where bodies overlap by more than these, as a corner
+ * in a corner does in every direction, the distance is more than its tangents promise until both meet at the top, which is a kink. To end before it would leave the direction
+ * to where the search began, a mirrored body with another one, and a symmetric body, by rounding, on one of its sides (tests/verification/wall_in_slot.yaml). */
 static clearance climb(const ab_trace *a, const ab_trace *b, size_t i, clearance from) {
     static const double FIRST_STEP = 0.02, ROUNDING = 1e-13, PI = 3.141592653589793;
     enum { MOST = 60 };
@@ -64,7 +60,7 @@ static clearance climb(const ab_trace *a, const ab_trace *b, size_t i, clearance
         if (!(angle > low.angle && angle < high.angle)) angle = 0.5 * (low.angle + high.angle);
         best = look_along(a, b, i, angle);
         const double left = low.distance + low.slope * (angle - low.angle) - best.distance;
-        if (left <= ROUNDING * a->cell && !(best.sharp && left < -ROUNDING * a->cell)) break;
+        if (fabs(left) <= ROUNDING * a->cell) break;
         if (best.slope > 0.0)
             low = best;
         else
