@@ -107,6 +107,8 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
         body->name, cells, speed_of(s, b), s->critical_dt);
 }
 
+enum { FEW = 4 }; /* points: a body of one cell with four */
+
 /* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). */
 static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
     const ab_class *finder = &contact->finder->class_;
@@ -116,7 +118,15 @@ static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec 
     for (int side = 0; side < 2; ++side) {
         const ab_body_spec *body = s->scene->bodies + contact->body[side];
         const ab_domain *domain = s->domains[contact->body[side]];
-        if (!is(body->method, "material-points") || domain->ops->count(domain) > 1) continue;
+        if (!is(body->method, "material-points")) continue;
+        const size_t count = domain->ops->count(domain);
+        if (count > 1 && count <= FEW)
+            ab_report_warning(report, contact->mark,
+                              "contact: body '%s' is %zu material points: the normals that algorithm multi-velocity finds for so few lean "
+                              "beside their corners, and may push it along what it lands on by a tenth of a cell; use algorithm "
+                              "point-to-segment, a direction as normal (out of the first body), or more points",
+                              body->name, count);
+        if (count > 1) continue;
         return ab_report_error(
             report, contact->mark,
             "contact: body '%s' is a single material point, which shows no face to algorithm multi-velocity and would be pushed "

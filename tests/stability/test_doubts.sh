@@ -52,6 +52,10 @@ expect run 1 "turned inside out .*dt is above the limit of the mesh as it is now
 expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verification/fe_bar 'time={end: 50, dt: 0.075}'
 expect check 2 "contact: body 'stone' is a single material point" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
+expect check 0 "warning: contact: body 'stone' is 4 material points" small_bodies bodies.stone.fill.per_cell=4
+expect check 0 - small_bodies bodies.stone.fill.per_cell=9
+expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=[0, -1]'
+expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].algorithm=point-to-segment'
 expect check 0 "warning: bodies.block: by its speed it leaves the grid through its right side at about [0-9.]+ s, before time.end, and would be [0-9.]+ m beyond" crossings 'grid.to=[20, 3]'
 expect check 0 - crossings 'grid.to=[20, 3]' 'grid.sides={right: outflow}'
 # 1.275 m down at 0.1 m/s2: 5.05 s; the run ends at 10 s, 5 - 1.275 m below
