@@ -34,8 +34,8 @@ static const ab_param PARAMS[] = {
     {"projection", "1", "onto straight faces: closed, or the iteration that quadratic faces need (the same answer)", "closed|newton",
      AB_CHOICE, 0, CLOSED, 0, 0},
     {"touching", "1",
-     "what of a material point is stopped and pushed: its centre, or the outline of its own body where it touches. Between two bodies of "
-     "points",
+     "what of a material point is stopped and pushed: its centre, or the outline of its own body where it touches (both passes against "
+     "vertices, as of surface: points, always take the outline). Between two bodies of points",
      "centre|outline", AB_CHOICE, 0, CENTRE, 0, 0},
 };
 
@@ -243,10 +243,13 @@ static const double BY_THE_FACE = 0.25; /* of a cell: no point that stands on it
 /* With touching: outline, the face of its own body that a material point touches with, half its size from its centre: that moves as the outline does there. With its centre's
  * velocity in place of it the two passes ask for two things, that the centres of a go with the faces of b and those of b with the faces of a: held both, as a tie has
  * to, nothing within half a point of the face can be strained, and contact points pull although a uniform pressure goes through. (But blocks at rest that quiver by flip rock
- * sooner: tests/stability/rest.yaml.) UINT32_MAX: its centre. */
+ * sooner: tests/stability/rest.yaml.) Where the other body's own pass is one of vertices, which touch with its outline (surface: points), so that only these points could
+ * disagree, the centre is no choice: forces along were off by half, displacements by more. UINT32_MAX: its centre. */
 static uint32_t own_face_of(const pass *p, size_t i, uint64_t base, const double normal[2], double half, double *xi) {
     const ab_surface *s = p->points;
-    if (p->self->touching == CENTRE || s->point_vertex || !s->face_count || !(half > 0.0)) return UINT32_MAX;
+    if (s->point_vertex || !s->face_count || !(half > 0.0)) return UINT32_MAX;
+    const int meets_vertices = p->self->passes == BOTH && p->faces->point_vertex;
+    if (p->self->touching == CENTRE && !meets_vertices) return UINT32_MAX;
     const double x[2] = {s->point_position[i] - half * normal[0], s->point_position[s->point_ld + i] - half * normal[1]};
     uint32_t from = UINT32_MAX;
     for (uint32_t k = 0; k < MOST_SLOTS && from == UINT32_MAX; ++k) {
