@@ -2,6 +2,7 @@
 #include "core/boundary_inside.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double STILL =
@@ -57,9 +58,11 @@ static void tensor_of(const ab_boundary *b, const double *rows, size_t e, double
 
 static ab_status complain(const ab_boundary *b, const ab_step *step, size_t e, const char *what, ab_report *report) {
     const char *why = b->service.message;
-    return ab_report_failure(report, "boundary '%s' on '%s' (boundaries[%zu]) %s at t = %.9g s (step %ld) near (%.6g, %.6g) m: %s",
-                             b->spec->loaded->class_.name, b->domain->spec->name, b->number, what, step->time, step->number, b->position[e],
-                             b->position[b->ld + e], why[0] ? why : "no reason given");
+    char line[32] = "";
+    if (b->spec->mark.line > 0) snprintf(line, sizeof line, ", line %d", b->spec->mark.line);
+    return ab_report_failure(report, "boundary '%s' on '%s' (boundaries[%zu]%s) %s at t = %.9g s (step %ld) near (%.6g, %.6g) m: %s",
+                             b->spec->loaded->class_.name, b->domain->spec->name, b->number, line, what, step->time, step->number,
+                             b->position[e], b->position[b->ld + e], why[0] ? why : "no reason given");
 }
 
 /* From here on displacements are counted, and what the body pulls with is held. */

@@ -2,6 +2,7 @@
 #include "core/doubts.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -137,6 +138,35 @@ static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec 
     return AB_OK;
 }
 
+/* A fixed dt or a cfl, of the scene or of a stage, against the limit of the bodies; `before` and `behind` the key: whose it is. */
+static ab_status doubt_dt(const ab_schedule *s, double dt, double cfl, ab_mark mark, const char *before, const char *behind,
+                          ab_report *report) {
+    if (dt > HOPELESS * s->critical_dt && s->scene->watch)
+        return ab_report_error(
+            report, mark,
+            "%sdt%s %.4g s is %.3g times the stable limit %.4g s (%s): nothing could come of it; use dt below the limit, "
+            "or cfl. (watchdog: {stop: false} lets it be tried)",
+            before, behind, dt, dt / s->critical_dt, s->critical_dt, s->limit);
+    if (cfl > HOPELESS && s->scene->watch)
+        return ab_report_error(
+            report, mark,
+            "%scfl%s %g is so many times the stable limit: nothing could come of it; use a cfl below 1. (watchdog: {stop: "
+            "false} lets it be tried)",
+            before, behind, cfl);
+    if (dt > s->critical_dt)
+        ab_report_warning(report, mark, "dt%s %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", behind, dt,
+                          s->critical_dt, s->limit);
+    return AB_OK;
+}
+
+/* bspline3 with usl bears less than a cfl of 1. */
+static void doubt_spline(const ab_body_spec *body, double cfl, ab_mark mark, const char *key, ab_report *report) {
+    if (is(body->basis, "bspline3") && is(body->update, "usl") && cfl > SPLINE_CFL)
+        ab_report_warning(report, mark,
+                          "%s %g: basis bspline3 with update usl (body '%s') is stable up to about %g; use that, or update musl", key, cfl,
+                          body->name, SPLINE_CFL);
+}
+
 ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
     const ab_scene *scene = s->scene;
     for (size_t b = 0; b < s->body_count; ++b) {
@@ -145,28 +175,22 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
         AB_TRY(doubt_flight(s, b, report));
         AB_TRY(doubt_crossing(s, b, report));
         doubt_poisson(s, b, report);
-        if (is(body->basis, "bspline3") && is(body->update, "usl") && scene->time_cfl > SPLINE_CFL)
-            ab_report_warning(report, scene->mark_time,
-                              "time.cfl %g: basis bspline3 with update usl (body '%s') is stable up to about %g; use that, or update musl",
-                              scene->time_cfl, body->name, SPLINE_CFL);
+        if (scene->stage_count == 0) doubt_spline(body, scene->time_cfl, scene->mark_time, "time.cfl", report);
+        for (size_t k = 0; k < scene->stage_count; ++k) {
+            char key[120];
+            snprintf(key, sizeof key, "cfl of stage '%.64s'", scene->stages[k].name);
+            doubt_spline(body, scene->stages[k].cfl, scene->stages[k].mark, key, report);
+        }
     }
     AB_TRY(ab_doubt_room(s, report));
     for (size_t c = 0; c < scene->contact_count; ++c) AB_TRY(doubt_single_point(s, scene->contacts + c, report));
     AB_TRY(ab_doubt_springs(s, report));
-    if (scene->time_dt > HOPELESS * s->critical_dt && scene->watch)
-        return ab_report_error(
-            report, scene->mark_time,
-            "time.dt %.4g s is %.3g times the stable limit %.4g s (%s): nothing could come of it; use dt below the limit, or "
-            "cfl. (watchdog: {stop: false} lets it be tried)",
-            scene->time_dt, scene->time_dt / s->critical_dt, s->critical_dt, s->limit);
-    if (scene->time_cfl > HOPELESS && scene->watch)
-        return ab_report_error(
-            report, scene->mark_time,
-            "time.cfl %g is so many times the stable limit: nothing could come of it; use a cfl below 1. (watchdog: {stop: "
-            "false} lets it be tried)",
-            scene->time_cfl);
-    if (scene->time_dt > s->critical_dt)
-        ab_report_warning(report, scene->mark_time, "dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
-                          scene->time_dt, s->critical_dt, s->limit);
+    if (scene->stage_count == 0) return doubt_dt(s, scene->time_dt, scene->time_cfl, scene->mark_time, "time.", "", report);
+    for (size_t k = 0; k < scene->stage_count; ++k) {
+        const ab_stage_spec *stage = scene->stages + k;
+        char of[120];
+        snprintf(of, sizeof of, " of stage '%.64s'", stage->name);
+        AB_TRY(doubt_dt(s, stage->dt, stage->cfl, stage->mark, "", of, report));
+    }
     return AB_OK;
 }

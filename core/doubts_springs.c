@@ -4,6 +4,8 @@
 #include "core/doubts_springs.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double SLOWER = 10;   /* times as many steps: said */
@@ -40,6 +42,28 @@ static bool chosen(const ab_class *class_, const ab_value *values, const char *n
     return value && value->integer == wanted;
 }
 
+/* The largest dt of the stages in which something acts, or time.dt; 0: none is written. */
+typedef struct longest {
+    double dt;
+    bool by_cfl;   /* some stage goes by cfl, or the scene */
+    char key[120]; /* whose dt it is */
+} longest;
+
+static longest longest_dt(const ab_scene *scene, uint64_t absent, bool boundary) {
+    longest it = {.dt = scene->time_dt, .by_cfl = !(scene->time_dt > 0.0), .key = "time.dt"};
+    if (scene->stage_count == 0) return it;
+    it.dt = 0.0, it.by_cfl = false;
+    for (size_t k = 0; k < scene->stage_count; ++k) {
+        const ab_stage_spec *stage = scene->stages + k;
+        if ((absent >> k & 1u) || (boundary && stage->made)) continue;
+        if (!(stage->dt > 0.0)) it.by_cfl = true;
+        if (!(stage->dt > it.dt)) continue;
+        it.dt = stage->dt;
+        snprintf(it.key, sizeof it.key, "dt of stage '%.64s' (line %d)", stage->name, stage->mark.line);
+    }
+    return it;
+}
+
 /* response penalty, stiffness_of modulus: k = stiffness M A/h on the effective mass of both faces. */
 static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
     enum { OF_MODULUS = 1 };
@@ -57,12 +81,13 @@ static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, 
     if (!(lighter > 0.0) || !(cell > 0.0) || !isfinite(modulus)) return;
     const double dt = 2.0 * sqrt(cell / (stiffness * modulus * lighter));
     const char *a = s->scene->bodies[contact->body[0]].name, *b = s->scene->bodies[contact->body[1]].name;
-    if (s->scene->time_dt > dt)
+    const longest step = longest_dt(s->scene, 0, false);
+    if (step.dt > dt)
         ab_report_warning(report, contact->mark,
                           "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, and "
-                          "time.dt is %.4g s; use a dt below that, cfl, stiffness below %.2g, or stiffness_of: mass, which bears any dt",
-                          a, b, stiffness, dt, s->scene->time_dt, stiffness * pow(dt / s->scene->time_dt, 2));
-    else if (!(s->scene->time_dt > 0.0) && SLOWER * dt < s->critical_dt)
+                          "%s is %.4g s; use a dt below that, cfl, stiffness below %.2g, or stiffness_of: mass, which bears any dt",
+                          a, b, stiffness, dt, step.key, step.dt, stiffness * pow(dt / step.dt, 2));
+    else if (step.by_cfl && SLOWER * dt < s->critical_dt)
         ab_report_warning(
             report, contact->mark,
             "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, so the "
@@ -100,13 +125,13 @@ static ab_status doubt_boundary(const ab_schedule *s, size_t number, ab_report *
             "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, %.2g times "
             "as short as the body's; they are a support and no ground beyond: %s. (watchdog: {stop: false} lets it be tried)",
             number, name, stiffness, dt, slower, REMEDY);
-    if (s->scene->time_dt > dt)
-        ab_report_warning(
-            report, spec->mark,
-            "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, and time.dt is "
-            "%.4g s; use a dt below that, cfl, or %s",
-            number, name, stiffness, dt, s->scene->time_dt, REMEDY + 4);
-    else if (!(s->scene->time_dt > 0.0) && slower > SLOWER)
+    const longest step = longest_dt(s->scene, spec->absent, true);
+    if (step.dt > dt)
+        ab_report_warning(report, spec->mark,
+                          "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, and %s is "
+                          "%.4g s; use a dt below that, cfl, or %s",
+                          number, name, stiffness, dt, step.key, step.dt, REMEDY + 4);
+    else if (step.by_cfl && slower > SLOWER)
         ab_report_warning(report, spec->mark,
                           "boundaries[%zu] (viscoelastic) on '%s': springs of %.3g Pa/m are stable up to a dt of about %.3g s, so the step "
                           "becomes %.2g times as short; %s",
@@ -114,8 +139,50 @@ static ab_status doubt_boundary(const ab_schedule *s, size_t number, ab_report *
     return AB_OK;
 }
 
+/* The column of a free-field: as many steps for one of the run as its elements ask for, and as many elements as the side is high; plugins/boundary/free_field.c has both limits. */
+static ab_status doubt_column(const ab_schedule *s, size_t number, ab_report *report) {
+    static const double MOST_PARTS = 1000, MOST_ELEMENTS = 100000;
+    const ab_boundary_spec *spec = s->scene->boundaries + number;
+    const ab_class *law = &spec->loaded->class_;
+    const ab_domain *domain = s->domains[spec->body];
+    if (strcmp(law->name, "free-field")) return AB_OK;
+    const char *name = s->scene->bodies[spec->body].name;
+    const ab_value *bottom = setting(law, spec->settings, "bottom"), *top = setting(law, spec->settings, "top");
+    const seen it = look(s, spec->body);
+    const double spacing = setting(law, spec->settings, "spacing")->real, least = it.speed * s->dt / MOST_PARTS;
+    double height = 0.0;
+    if (bottom->given && top->given) {
+        height = top->real - bottom->real;
+    } else if (!spec->where.has[1]) { /* the whole side */
+        const size_t count = domain->ops->count(domain);
+        double *place = malloc((2 * count + 1) * sizeof *place), low = INFINITY, high = -INFINITY;
+        if (!place) return ab_report_failure(report, "no memory for the places of body '%s'", name);
+        const ab_status status = domain->ops->read(domain, "position", place, report);
+        for (size_t k = 0; status == AB_OK && k < count; ++k) low = fmin(low, place[2 * k + 1]), high = fmax(high, place[2 * k + 1]);
+        free(place);
+        AB_TRY(status);
+        height = high - low;
+    }
+    if (isfinite(least) && spacing < least)
+        return ab_report_error(
+            report, spec->mark,
+            "boundaries[%zu] (free-field) on '%s': with a spacing of %.3g m its column needs more than %g steps for one of "
+            "the run, %.3g s; use a spacing above %.3g m, best that of the elements or cells beside the side",
+            number, name, spacing, MOST_PARTS, s->dt, least);
+    if (height / spacing > MOST_ELEMENTS)
+        return ab_report_error(
+            report, spec->mark,
+            "boundaries[%zu] (free-field) on '%s': with a spacing of %.3g m its column of %.4g m has more than %g elements; "
+            "use a spacing above %.3g m, best that of the elements or cells beside the side",
+            number, name, spacing, height, MOST_ELEMENTS, height / MOST_ELEMENTS);
+    return AB_OK;
+}
+
 ab_status ab_doubt_springs(const ab_schedule *s, ab_report *report) {
     for (size_t c = 0; c < s->scene->contact_count; ++c) doubt_contact(s, s->scene->contacts + c, report);
-    for (size_t k = 0; k < s->scene->boundary_count; ++k) AB_TRY(doubt_boundary(s, k, report));
+    for (size_t k = 0; k < s->scene->boundary_count; ++k) {
+        AB_TRY(doubt_boundary(s, k, report));
+        AB_TRY(doubt_column(s, k, report));
+    }
     return AB_OK;
 }

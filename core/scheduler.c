@@ -181,8 +181,9 @@ static ab_status each(ab_schedule *s, const ab_step *step, size_t offset, ab_rep
 static void warn_of_dt(ab_schedule *s, ab_report *report) {
     if (s->warned || !(s->fixed_dt > s->critical_dt)) return;
     s->warned = true;
-    ab_report_warning(report, s->scene->mark_time, "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl",
-                      s->time, s->fixed_dt, s->critical_dt, s->limit);
+    ab_report_warning(report, s->stages ? ab_stages_spec(s)->mark : s->scene->mark_time,
+                      "at %.4g s dt %.4g s is above the stable limit %.4g s (%s); use dt below it or cfl", s->time, s->fixed_dt,
+                      s->critical_dt, s->limit);
 }
 
 /* A step by cfl that falls and falls: something in the scene runs away, or time does not go on any more. */

@@ -170,8 +170,9 @@ ab_status ab_stages_next(ab_schedule *s, bool *datum, ab_report *report) {
                      .energy_ratio = NAN};
     s->time = s->begin = s->end;
     s->first_step = s->number;
-    s->warned = false;
-    return enter(s, report);
+    AB_TRY(enter(s, report));
+    s->warned = s->fixed_dt > s->first_critical_dt; /* that was told before the run */
+    return AB_OK;
 }
 
 bool ab_stages_keep(ab_schedule *s, ab_checkpoint *c) {

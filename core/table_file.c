@@ -205,6 +205,11 @@ static void choose(reading *r, const ab_node *columns, const ab_node *file, cons
             want_numbered(r, node, number, where);
         else
             want_named(r, node, where);
+        if (r->good && k > 0 && r->wanted[k] == r->wanted[0]) {
+            r->good = false;
+            ab_report_error(r->reader->report, node->mark, "%s.columns[%zu] is the first column once more, '%.64s'; choose another one",
+                            where, k, node->text);
+        }
     }
 }
 

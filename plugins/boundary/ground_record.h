@@ -121,7 +121,7 @@ static inline void correct(const double *t, double *a, double *v, size_t rows, i
 /* What the corrected record comes to, in a line for the user. */
 static inline void tell(const ground_record *b, size_t part, int baseline, const double c[2]) {
     static const char *const names[] = {"none", "mean", "linear", "quadratic"};
-    char text[400], subtracted[120] = "nothing";
+    char text[500], subtracted[120] = "nothing";
     const size_t last = b->rows - 1;
     const char *unit = b->a[part] ? "m/s2" : "m/s";
     double moved = 0, most = 0;
@@ -142,7 +142,7 @@ static inline void tell(const ground_record *b, size_t part, int baseline, const
              b->parts == 1 ? ""
              : part == 0   ? ", along x"
              : part == 1   ? ", along y"
-                           : ", along z",
+                           : ", along z, which no scene in a plane uses (columns: [...] of a file leaves it out)",
              names[baseline], subtracted, most, b->v[part][last], moved, b->after == REST ? "is at rest then" : "keeps that velocity");
     b->host->log(b->host->context, text);
 }

@@ -20,6 +20,16 @@ expect() { # what to do, status, pattern ("-": no warning and no error), scene, 
     fi
 }
 nodes=light_nodes
+# Every stage's own dt, by its name, and springs of the boundaries that act in it; the column of a free field.
+stages=../verification/fe_stages_column
+expect check 2 "error: dt of stage 'release' 1 s is [0-9.e+]+ times the stable limit" $stages 'stages[1]={name: release, duration: 1, dt: 1}'
+expect check 0 "warning: dt of stage 'release' 0.0015 s is above the stable limit" $stages 'stages[1]={name: release, duration: 1, dt: 1.5e-3}'
+expect check 0 - $stages 'stages[1]={name: release, duration: 1, dt: 8e-4}'
+expect check 0 "boundaries\[0\] \(viscoelastic\).* and dt of stage 'release' \(line [0-9]+\) is 0.0008 s" $stages 'stages[1]={name: release, duration: 1, dt: 8e-4}' \
+    'boundaries=[{on: ground, where: {side: right}, boundary: viscoelastic, springs: given, k_n: 1e11, stages: release}]'
+expect check 0 - $stages 'boundaries=[{on: ground, where: {side: right}, boundary: viscoelastic, springs: given, k_n: 2e8, stages: release}]'
+expect check 2 'yaml:[0-9]+:[0-9]+: error: boundaries\[1\] \(free-field\) on .shear.*more than 1000 steps.*use a spacing above' ../verification/free_field 'boundaries[1].spacing=1e-6'
+expect check 2 'yaml:[0-9]+:[0-9]+: error: boundaries\[1\] \(free-field\) on .shear.*has more than 100000 elements' ../verification/free_field 'boundaries[1].spacing=9e-5' 'time={end: 1.2, cfl: 1e-6}'
 expect check 0 - $nodes
 expect check 2 '--set time: error: time.dt 2 s is [0-9.]+ times the stable limit .* use dt below the limit' $nodes 'time={end: end, dt: 2}'
 expect plan 2 'error: time.dt 2 s is' $nodes 'time={end: end, dt: 2}'

@@ -125,6 +125,8 @@ static void test_columns_are_chosen_by_name_or_number(void **state) {
     refused(file, "columns: [t, 5]", &history, 1, 0, "scene.yaml:1:31: error: boundaries[0].history.columns: '5': ", "has columns 1 to 4");
     refused(file, "columns: [t, 0.5]", &history, 1, 0, "has columns 1 to 4", "'0.5'");
     refused(file, "columns: [t, [a]]", &history, 1, 0, "columns[1] must be the name or the number of a column", "a list");
+    refused(file, "columns: [t, t]", &history, 1, 0, "columns[1] is the first column once more, 't'", "choose another");
+    refused(file, "columns: [2, t]", &history, 1, 0, "columns[1] is the first column once more, 't'", "choose another");
     refused(file, "columns: t", &history, 1, 0, "columns must be a list", "names or numbers");
     refused("t, t\n0, 1\n", "columns: [t, 2]", &history, 1, 0, "more than one column 't'", "write its number");
     refused("0, 1\n1, 2\n", "columns: [t, a]", &history, 2, 0, "has no line with names", "write the columns' numbers");
