@@ -117,6 +117,7 @@ def switched_on(side, steps):
     one, touch, apart = base(side, steps), two(side, steps), two(side, steps, 12)
     body = "bodies.block."
     plastic = {"model": "von-mises", "E": 1e8, "nu": 0.3, "density": 1000}
+    calm = put(one, "bodies.block.velocity", [0, 0])
     at_axis = put(one, "grid.from", [0, -8])
     soil = {"E": 1e8, "nu": 0.3, "density": 1000}
     clay = {"model": "modified-cam-clay", "kappa": 0.01, "lambda": 0.1, "M": 1, "nu": 0.3, "void_ratio": 1, "pressure": 1e5, "density": 1000}
@@ -140,9 +141,9 @@ def switched_on(side, steps):
         ("boundaries", "`viscous` that holds the stress (`hold: true`)", bounded(one, "viscous"), bounded(one, "viscous", hold=True)),
         ("boundaries", "`viscoelastic` on one side", one, bounded(one, "viscoelastic", r_b=side)),
         ("boundaries", "`pressure` on one side", one, bounded(one, "pressure", "top", pressure=1e4)),
-        ("boundaries", "`base-motion`, rigid, on one side", one, bounded(one, "base-motion", velocity=record)),
-        ("boundaries", "and `free-field` on another", bounded(one, "base-motion", velocity=record),
-         bounded(bounded(one, "base-motion", velocity=record), "free-field", "left", velocity=record, spacing=1)),
+        ("boundaries", "`base-motion`, rigid, on one side", calm, bounded(calm, "base-motion", velocity=record)),
+        ("boundaries", "and `free-field` on another", bounded(calm, "base-motion", velocity=record),
+         bounded(bounded(calm, "base-motion", velocity=record), "free-field", "left", velocity=record, spacing=1)),
         ("boundaries", "`viscous` on one side of elements", meshed(side, steps), bounded(meshed(side, steps), "viscous")),
         ("stages", "local damping", staged(one), staged(one, damping={"local": 0.1})),
         ("stages", "kinetic damping", staged(one), staged(one, damping={"kinetic": True})),
