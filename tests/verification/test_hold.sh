@@ -13,7 +13,7 @@ scene=tests/verification/fe_hold.yaml
 
 passes $scene --set constants.n=2
 passes $scene --set constants.lean=-3 --set 'expect[5].tolerance=10'
-passes $scene --set space=axisymmetric --set 'bodies.c4.mesh.type=q8' --set 'expect[0].tolerance=1e-11' --set 'expect[4].reference=rho*g*2*pi*69' --set 'expect[5].tolerance=100'
+passes $scene --set space=axisymmetric --set 'bodies.c4.mesh.type=q8' --set 'expect[0].tolerance=1e-11' --set 'expect[4].reference=rho*g*2*pi*69' --set 'expect[5].tolerance=100' --set 'expect[7].tolerance=0.01'
 # Not held: the block falls, and the springs do not count what it has settled by.
 misses $scene --set 'boundaries[2].hold=false'
 
