@@ -10,6 +10,7 @@
 
 #include "core/commands.h"
 #include "core/files.h"
+#include "core/plugin_host.h"
 #include "core/plugin_new.h"
 #include "core/suggest.h"
 
@@ -135,6 +136,26 @@ static ab_status write_all(const char *kind, const char *name, const char *folde
     return AB_OK;
 }
 
+/* A second plugin of a name and kind that is there already would be refused when a scene asks for it. Plugins that cannot be loaded are not this command's matter. */
+static ab_status check_not_there(const char *kind, const char *name, const ab_command_line *line, ab_report *report) {
+    const uint32_t wanted = strcmp(kind, "material") == 0 ? AB_MATERIAL : strcmp(kind, "boundary") == 0 ? AB_BOUNDARY : AB_CONTACT;
+    ab_report *aside = ab_report_create();
+    ab_registry *registry = NULL;
+    ab_status status = AB_OK;
+    if (aside != NULL && ab_registry_create(line->plugin_path, &registry, aside) == AB_OK) {
+        ab_registry_load_all(registry, aside);
+        for (size_t i = 0; i < ab_registry_count(registry) && status == AB_OK; i++) {
+            const ab_loaded_class *there = ab_registry_class(registry, i);
+            if (there->class_.kind == wanted && strcmp(there->class_.name, name) == 0)
+                status = ab_report_error(report, AB_NOWHERE, "'%s' is the name of a plugin that is there already, %s; take another", name,
+                                         there->path);
+        }
+    }
+    ab_registry_destroy(registry);
+    ab_report_destroy(aside);
+    return status;
+}
+
 int ab_command_plugin_new(const ab_command_line *line) {
     ab_report *report = ab_report_create();
     if (!report) return AB_FAILED;
@@ -146,6 +167,7 @@ int ab_command_plugin_new(const ab_command_line *line) {
                             "material soft-clay`");
     if (status == AB_OK) status = check_kind(line->words[1], report);
     if (status == AB_OK) status = check_name(line->words[2], report);
+    if (status == AB_OK) status = check_not_there(line->words[1], line->words[2], line, report);
     if (status == AB_OK) status = write_all(line->words[1], line->words[2], line->output ? line->output : line->words[2], report);
     fflush(stdout);
     ab_report_print(report, stderr);

@@ -69,7 +69,9 @@ static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, 
     enum { OF_MODULUS = 1 };
     const ab_class *law = &contact->responder->class_;
     if (strcmp(law->name, "penalty") || !chosen(law, contact->responder_settings, "stiffness_of", OF_MODULUS)) return;
-    const double stiffness = setting(law, contact->responder_settings, "stiffness")->real;
+    const ab_value *given = setting(law, contact->responder_settings, "stiffness");
+    if (given == NULL) return; /* somebody's own plugin of that name */
+    const double stiffness = given->real;
     double modulus = INFINITY, cell = INFINITY, lighter = 0.0;
     for (int side = 0; side < 2; ++side) {
         const seen it = look(s, contact->body[side]);

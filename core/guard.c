@@ -3,6 +3,7 @@
 #include "core/guard.h"
 
 #include <pthread.h>
+#include <omp.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -164,13 +165,17 @@ static void describe(const ab_guard_set *set, ab_fault *fault) {
 bool ab_guard_call(const ab_guard_set *set, int (*call)(void *), void *data, int *code, ab_fault *fault) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, catch_faults);
+    const int threads = omp_get_max_threads(); /* a loop that the plugin shares out stays on this thread, the only one that can come back */
+    omp_set_num_threads(1);
     if (sigsetjmp(now.back, 0)) {
+        omp_set_num_threads(threads);
         describe(set, fault);
         return false;
     }
     now.active = 1;
     *code = call(data);
     now.active = 0;
+    omp_set_num_threads(threads);
     return true;
 }
 

@@ -24,6 +24,7 @@ refused 'finds contact points or responds' contact clay
 refused 'has a meaning in the source' boundary sqrt
 refused 'are those of the interface' material ab-host
 refused 'takes a kind' material
+refused 'linear-elastic. is the name of a plugin that is there already' material linear-elastic
 refused 'cannot be the name' material Clay
 refused 'cannot be the name' material ../clay
 refused 'cannot be the name' material soft--clay

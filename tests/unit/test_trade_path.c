@@ -92,7 +92,15 @@ static void test_a_path_ends_where_all_runs_end(void **state) {
     assert_int_equal(ab_trade_most_accurate(&path.trade, 0.1), best);
     assert_true(ab_trade_given_up(&path.trade, 2, PIC));
     assert_false(ab_trade_given_up(&path.trade, 2, 0)); /* flip is on the front */
-    for (size_t i = 0; i < RUNS; i++)                   /* nothing that was not wanted is run */
+    char *table = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&table, &size);
+    ab_trade_table(&path.trade, stream);
+    fclose(stream);
+    assert_non_null(strstr(table, "transfer=pic was beaten, or broke off, wherever it was tried, and was given up"));
+    assert_non_null(strstr(table, "22 of 48 combinations were run"));
+    free(table);
+    for (size_t i = 0; i < RUNS; i++) /* nothing that was not wanted is run */
         assert_true(path.trials[i].wanted || path.trials[i].run.state == AB_CHILD_WAITING);
 }
 
