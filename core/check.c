@@ -1,6 +1,7 @@
 /* check.c: `abut plugins check FILE.so|NAME`: which classes, one process per promise with limits of time and memory, and the report. */
 #include "core/check.h"
 
+#include <math.h>
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
@@ -53,6 +54,15 @@ void ab_check_trying(ab_check *check, const char *format, ...) {
 double ab_check_uniform(ab_check *check, double low, double high) {
     check->random = check->random * 6364136223846793005u + 1442695040888963407u;
     return low + (high - low) * (double)(check->random >> 11) * 0x1p-53;
+}
+
+void ab_check_unit_vector(ab_check *check, uint32_t dimension, double *v) {
+    double size = 0.0;
+    while (!(size > 0.1 && size < 1.0)) {
+        size = 0.0;
+        for (uint32_t c = 0; c < dimension; c++) v[c] = ab_check_uniform(check, -1.0, 1.0), size += v[c] * v[c];
+    }
+    for (uint32_t c = 0; c < dimension; c++) v[c] /= sqrt(size);
 }
 
 static int reserve_nothing(void *context, ab_points *points, size_t points_more, size_t stencil_more) {

@@ -44,6 +44,7 @@ _Noreturn void ab_check_skip(ab_check *, const char *why);
 void ab_check_trying(ab_check *, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 double ab_check_uniform(ab_check *, double low, double high);
+void ab_check_unit_vector(ab_check *, uint32_t dimension, double *v);
 /* "E = 1e+07, nu = 0.3" */
 const char *ab_check_words(const ab_check *, const ab_value *settings, char *text, size_t size);
 

@@ -14,15 +14,6 @@ void edge_bench_point(edge_bench *b) {
     e->flag = b->flag;
 }
 
-static void unit_vector(ab_check *check, uint32_t dimension, double *v) {
-    double size = 0.0;
-    while (!(size > 0.1 && size < 1.0)) {
-        size = 0.0;
-        for (uint32_t c = 0; c < dimension; c++) v[c] = ab_check_uniform(check, -1.0, 1.0), size += v[c] * v[c];
-    }
-    for (uint32_t c = 0; c < dimension; c++) v[c] /= sqrt(size);
-}
-
 /* Edges of soil at rest, as a boundary begins to act. */
 void edge_bench_begin(ab_check *check, edge_bench *b, uint32_t dimension) {
     const ab_class *class_ = &check->loaded->class_;
@@ -43,7 +34,7 @@ void edge_bench_begin(ab_check *check, edge_bench *b, uint32_t dimension) {
     }
     for (size_t i = 0; i < LD; i++) {
         double n[3] = {0};
-        unit_vector(check, dimension, n);
+        ab_check_unit_vector(check, dimension, n);
         for (uint32_t c = 0; c < dimension; c++) {
             b->normal[c * LD + i] = n[c];
             b->position[c * LD + i] = ab_check_uniform(check, 0.0, 10.0);

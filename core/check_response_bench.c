@@ -16,15 +16,6 @@ void ab_contact_bench_point(ab_contact_bench *b) {
     p->impulse = b->impulse, p->state0 = b->state0, p->state1 = b->state1;
 }
 
-static void unit_vector(ab_check *check, uint32_t dimension, double *v) {
-    double size = 0.0;
-    while (!(size > 0.1 && size < 1.0)) {
-        size = 0.0;
-        for (uint32_t c = 0; c < dimension; c++) v[c] = ab_check_uniform(check, -1.0, 1.0), size += v[c] * v[c];
-    }
-    for (uint32_t c = 0; c < dimension; c++) v[c] /= sqrt(size);
-}
-
 void ab_contact_bench_begin(ab_check *check, ab_contact_bench *b, uint32_t dimension) {
     memset(b, 0, sizeof *b);
     b->states = (size_t)ab_guard_state_rows(&check->loaded->class_, dimension);
@@ -44,7 +35,7 @@ void ab_contact_bench_begin(ab_check *check, ab_contact_bench *b, uint32_t dimen
     ab_contact_bench_point(b);
     for (size_t i = 0; i < AB_BENCH_LD; i++) {
         double n[3] = {0};
-        unit_vector(check, dimension, n);
+        ab_check_unit_vector(check, dimension, n);
         b->key[i] = 100 + i;
         b->a_start[i + 1] = b->b_start[i + 1] = (i + 1) * (i % 2 ? 1 : AB_BENCH_STENCIL) + (i % 2 ? (i + 1) / 2 : 0); /* filled below */
         for (uint32_t c = 0; c < dimension; c++) {

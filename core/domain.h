@@ -100,6 +100,19 @@ typedef struct ab_edge_list {
     size_t group; /* so many edges on end are shares of one piece of outline and have its displacement; 0: each is one */
 } ab_edge_list;
 
+/* Rows of ld edges: place (2), normal (2), area, density, speeds of P and S waves. */
+enum { AB_EDGE_ROWS = 8 };
+static inline ab_edge_list ab_edge_list_of(const double *rows, size_t count, size_t ld) {
+    return (ab_edge_list){.count = count,
+                          .ld = ld,
+                          .position = rows,
+                          .normal = rows + 2 * ld,
+                          .area = rows + 4 * ld,
+                          .density = rows + 5 * ld,
+                          .p_wave_speed = rows + 6 * ld,
+                          .s_wave_speed = rows + 7 * ld};
+}
+
 /* Elements for results: how a body's points (nodes) hang together. */
 typedef struct ab_cells {
     size_t count;

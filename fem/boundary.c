@@ -6,7 +6,6 @@
 
 #include "fem/domain.h"
 
-enum { ROWS = 8 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds */
 /* Cosine: faces that turn by less than 30 degrees at a node share one edge there; at a corner each has its own. */
 static const double TOGETHER = 0.866;
 
@@ -21,7 +20,7 @@ struct fem_edges {
     bool hold;
     size_t count, ld, share_count;
     share *shares;  /* in the order of faces */
-    double *rows;   /* ROWS x ld */
+    double *rows;   /* AB_EDGE_ROWS x ld */
     double *vector; /* area vectors, pairs */
     size_t *start;
     uint32_t *dof;
@@ -66,7 +65,7 @@ static uint32_t edge_of(struct fem_edges *e, uint32_t *last, uint32_t node, cons
 static ab_status take_arrays(fem_body *body, struct fem_edges *e, size_t faces, ab_report *report) {
     const size_t nodes = body->element->nodes == 8 ? 3 : 2, shares = nodes * faces;
     e->shares = fem_take(body, shares, sizeof *e->shares);
-    e->rows = fem_take(body, ROWS * ((shares + 7) / 8 * 8), sizeof *e->rows);
+    e->rows = fem_take(body, AB_EDGE_ROWS * ((shares + 7) / 8 * 8), sizeof *e->rows);
     e->vector = fem_take(body, 2 * shares, sizeof *e->vector);
     e->start = fem_take(body, shares + 1, sizeof *e->start);
     e->dof = fem_take(body, shares, sizeof *e->dof);
@@ -154,17 +153,8 @@ ab_status fem_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
             for (size_t c = 0; c < 2; ++c) normal[c * ld + k] = vector[c] / length;
         e->start[k + 1] = k + 1;
     }
-    *list = (ab_edge_list){.count = e->count,
-                           .ld = ld,
-                           .position = x,
-                           .normal = normal,
-                           .area = area,
-                           .density = density,
-                           .p_wave_speed = x + 6 * ld,
-                           .s_wave_speed = x + 7 * ld,
-                           .start = e->start,
-                           .dof = e->dof,
-                           .weight = e->weight,
-                           .own_force = e->hold ? body->force : NULL};
+    *list = ab_edge_list_of(e->rows, e->count, ld);
+    list->start = e->start, list->dof = e->dof, list->weight = e->weight;
+    list->own_force = e->hold ? body->force : NULL;
     return AB_OK;
 }

@@ -11,7 +11,7 @@
 #include "core/checkpoint.h"
 #include "mpm/body.h"
 
-enum { ROWS = 10 }; /* of numbers that are shown: position 2, normal 2, area, density, two wave speeds, own traction 2 */
+enum { ROWS = AB_EDGE_ROWS + 2 }; /* and the own traction */
 
 struct mpm_edges {
     size_t boundary; /* of the scene */
@@ -172,20 +172,9 @@ ab_status mpm_edges(ab_domain *domain, size_t boundary, const ab_step *step, ab_
         area[p] = size;
         answers(body, e->dof + at, e->weight + at, e->start[p + 1] - at, e->answer + at);
     }
-    *list = (ab_edge_list){.count = e->count,
-                           .ld = ld,
-                           .position = x,
-                           .normal = normal,
-                           .area = area,
-                           .density = density,
-                           .p_wave_speed = x + 6 * ld,
-                           .s_wave_speed = x + 7 * ld,
-                           .start = e->start,
-                           .dof = e->dof,
-                           .weight = e->weight,
-                           .answer = e->answer,
-                           .own_traction = e->hold ? traction : NULL,
-                           .group = e->group};
+    *list = ab_edge_list_of(e->rows, e->count, ld);
+    list->start = e->start, list->dof = e->dof, list->weight = e->weight;
+    list->answer = e->answer, list->own_traction = e->hold ? traction : NULL, list->group = e->group;
     return AB_OK;
 }
 
