@@ -138,6 +138,26 @@ static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec 
     return AB_OK;
 }
 
+/* Centres of points against faces, both ways: faces move with their own points, which stand elsewhere (tests/stability/test_friction_tied.sh). */
+static void doubt_rough(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
+    static const double ROUGH = 10; /* friction that is to hold fast */
+    const ab_class *finder = &contact->finder->class_;
+    if (!is(finder->name, "point-to-segment")) return;
+    for (int side = 0; side < 2; ++side) {
+        const ab_body_spec *body = s->scene->bodies + contact->body[side];
+        if (!is(body->method, "material-points") || body->surface_points) return;
+    }
+    const ab_value *touching = ab_doubt_setting(finder, contact->finder_settings, "touching"),
+                   *passes = ab_doubt_setting(finder, contact->finder_settings, "passes"),
+                   *friction = ab_doubt_setting(&contact->responder->class_, contact->responder_settings, "friction");
+    if (!touching || touching->integer || !passes || passes->integer || !friction || !(friction->real >= ROUGH)) return;
+    ab_report_warning(
+        report, contact->mark,
+        "contact: friction %g is to hold '%s' and '%s' together, but where the centres of points touch (touching: centre) the two "
+        "passes ask for different motions, and it gives way by up to 3 %% of what it holds; use touching: outline, or passes: first",
+        friction->real, s->scene->bodies[contact->body[0]].name, s->scene->bodies[contact->body[1]].name);
+}
+
 /* A fixed dt or a cfl, of the scene or of a stage, against the limit of the bodies; `before` and `behind` the key: whose it is. */
 static ab_status doubt_dt(const ab_schedule *s, double dt, double cfl, ab_mark mark, const char *before, const char *behind,
                           ab_report *report) {
@@ -184,6 +204,7 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
     }
     AB_TRY(ab_doubt_room(s, report));
     for (size_t c = 0; c < scene->contact_count; ++c) AB_TRY(doubt_single_point(s, scene->contacts + c, report));
+    for (size_t c = 0; c < scene->contact_count; ++c) doubt_rough(s, scene->contacts + c, report);
     AB_TRY(ab_doubt_springs(s, report));
     if (scene->stage_count == 0) return doubt_dt(s, scene->time_dt, scene->time_cfl, scene->mark_time, "time.", "", report);
     for (size_t k = 0; k < scene->stage_count; ++k) {

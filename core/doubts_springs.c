@@ -29,8 +29,7 @@ static seen look(const ab_schedule *s, size_t b) {
     return it;
 }
 
-/* The setting of that name; NULL where the class has none. */
-static const ab_value *setting(const ab_class *class_, const ab_value *values, const char *name) {
+const ab_value *ab_doubt_setting(const ab_class *class_, const ab_value *values, const char *name) {
     for (uint32_t k = 0; k < class_->nparam; ++k)
         if (!strcmp(class_->param[k].name, name)) return values + k;
     return NULL;
@@ -38,7 +37,7 @@ static const ab_value *setting(const ab_class *class_, const ab_value *values, c
 
 /* Of the choices "a|b|c", the one that a setting has taken. */
 static bool chosen(const ab_class *class_, const ab_value *values, const char *name, int64_t wanted) {
-    const ab_value *value = setting(class_, values, name);
+    const ab_value *value = ab_doubt_setting(class_, values, name);
     return value && value->integer == wanted;
 }
 
@@ -69,7 +68,7 @@ static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, 
     enum { OF_MODULUS = 1 };
     const ab_class *law = &contact->responder->class_;
     if (strcmp(law->name, "penalty") || !chosen(law, contact->responder_settings, "stiffness_of", OF_MODULUS)) return;
-    const ab_value *given = setting(law, contact->responder_settings, "stiffness");
+    const ab_value *given = ab_doubt_setting(law, contact->responder_settings, "stiffness");
     if (given == NULL) return; /* somebody's own plugin of that name */
     const double stiffness = given->real;
     double modulus = INFINITY, cell = INFINITY, lighter = 0.0;
@@ -103,8 +102,8 @@ static double boundary_stiffness(const ab_boundary_spec *spec, const seen *it) {
     const ab_class *law = &spec->loaded->class_;
     if (strcmp(law->name, "viscoelastic")) return 0.0;
     if (chosen(law, spec->settings, "springs", GIVEN))
-        return fmax(setting(law, spec->settings, "k_n")->real, setting(law, spec->settings, "k_t")->real);
-    const double r_b = setting(law, spec->settings, "r_b")->real;
+        return fmax(ab_doubt_setting(law, spec->settings, "k_n")->real, ab_doubt_setting(law, spec->settings, "k_t")->real);
+    const double r_b = ab_doubt_setting(law, spec->settings, "r_b")->real;
     if (chosen(law, spec->settings, "springs", KELLEZI)) return it->modulus / r_b;
     return it->modulus / (4.0 * r_b); /* G/(2 r_b), and G is at most half of the P-wave modulus */
 }
@@ -149,9 +148,9 @@ static ab_status doubt_column(const ab_schedule *s, size_t number, ab_report *re
     const ab_domain *domain = s->domains[spec->body];
     if (strcmp(law->name, "free-field")) return AB_OK;
     const char *name = s->scene->bodies[spec->body].name;
-    const ab_value *bottom = setting(law, spec->settings, "bottom"), *top = setting(law, spec->settings, "top");
+    const ab_value *bottom = ab_doubt_setting(law, spec->settings, "bottom"), *top = ab_doubt_setting(law, spec->settings, "top");
     const seen it = look(s, spec->body);
-    const double spacing = setting(law, spec->settings, "spacing")->real, least = it.speed * s->dt / MOST_PARTS;
+    const double spacing = ab_doubt_setting(law, spec->settings, "spacing")->real, least = it.speed * s->dt / MOST_PARTS;
     double height = 0.0;
     if (bottom->given && top->given) {
         height = top->real - bottom->real;

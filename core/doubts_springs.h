@@ -8,4 +8,7 @@
  * springs of a boundary are so stiff that no run would end. */
 ab_status ab_doubt_springs(const ab_schedule *schedule, ab_report *report);
 
+/* The setting of that name; NULL where the class has none. */
+const ab_value *ab_doubt_setting(const ab_class *, const ab_value *values, const char *name);
+
 #endif

@@ -83,6 +83,13 @@ expect run 1 "left the grid through its bottom side at .* t = 5.0[0-9]* s" "${fa
 expect check 0 "through its top side at about 1.78[0-9]* s|through its top side at about 1.77[0-9]* s" "${fall[@]}" 'bodies.block.velocity=[0.1, 1.2]'
 expect check 0 - "${fall[@]}" bodies.block.gravity=false
 expect check 0 - crossings
+# friction that is to hold fast, and centres of points that are seen both ways
+pulled=../verification/pulled_block
+rough='contact=[{bodies: [block, plane], algorithm: point-to-segment, response: coulomb, friction: 1e6'
+expect check 0 "warning: contact: friction 1e.06 is to hold 'block' and 'plane' together, .* use touching: outline, or passes: first" $pulled "$rough}]"
+expect check 0 - $pulled "$rough, touching: outline}]"
+expect check 0 - $pulled "$rough, passes: second}]"
+expect check 0 - $pulled "${rough/1e6/0.9}}]"
 # springs against the step: the limits that the run finds are 0.00183 s, 0.00100 s and 1.00e-5 s for stiffness 30, 100 and 1e6
 springs=../verification/springs_slide
 expect plan 0 "contact: where 'block' and 'plane' meet, springs of stiffness 30 x modulus are stable up to a dt of about 0.00223 s, and time.dt is 0.0045 s.*stiffness below 7.3" $springs constants.k=30 'time={end: end, dt: 0.0045}'
