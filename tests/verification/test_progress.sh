@@ -8,9 +8,8 @@ cd "${ABUT_SCRATCH:-$(mktemp -d)}"
 cat >scene.yaml <<'SCENE'
 abut: 1
 space: plane-strain
-gravity: [0, -9.81]
 time: {end: 1000, dt: 1e-4}
-grid: {from: [0, -10000], to: [4, 4], cell: 0.25}
+grid: {from: [0, 0], to: [4, 4], cell: 0.25}
 materials: {rubber: {model: linear-elastic, E: 1e5, nu: 0.3, density: 1000}}
 bodies: {block: {method: material-points, material: rubber, shape: {box: [[1, 1], [3, 3]]}}}
 history: {every: 1000}

@@ -9,7 +9,7 @@ scratch=${ABUT_SCRATCH:-$(mktemp -d)}
 export OMP_WAIT_POLICY=passive # more threads than cores: waiting ones make room
 for threads in 1 2 3 5; do
     "$build/abut" run cases/block_on_incline/scene.yaml --quiet -j $threads -o "$scratch/$threads" \
-        --set time.end=0.1 --set constants.settle=0.02 --set output.every=0.04 --set history.every=1 --set grid.cell=0.125 --set expect=[]
+        --set time.end=0.06 --set constants.settle=0.02 --set output.every=0.02 --set history.every=1 --set grid.cell=0.125 --set expect=[]
 done
 python3 - "$scratch" <<'PYTHON'
 import sys
@@ -39,7 +39,7 @@ PYTHON
 for setting in transfer=apic 'transfer={xpic: 3}' update=usavg; do
     for threads in 1 2 3 5; do
         "$build/abut" run tests/verification/ring.yaml --quiet -j $threads -o "$scratch/ring$threads" --set bodies.ring."$setting" \
-            --set constants.cells=24 --set time.end=0.01 --set history.every=1 --set expect=[] 2>/dev/null
+            --set constants.cells=24 --set time.end=0.005 --set history.every=1 --set expect=[] 2>/dev/null
     done
     for threads in 2 3 5; do
         cmp "$scratch/ring1/history.csv" "$scratch/ring$threads/history.csv" || { echo "$setting differs on $threads threads" >&2 && exit 1; }
