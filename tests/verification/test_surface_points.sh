@@ -1,7 +1,7 @@
 #!/bin/bash
 # cost: 55
 # Bodies of points that touch by points on their own outline: impact along the grid and turned, a block at rest, a block that slides; the same bits on any number of
-# threads; contact points in the results; pressure of Hertz. test_surface_points.sh BUILD
+# threads; contact points in the results; pressure of Hertz. test_surface_points.sh BUILD; with ABUT_ALL=yes (tests/run --all) one more
 set -u
 build=${1:?the build folder}
 scratch=${ABUT_SCRATCH:-$(mktemp -d)}
@@ -25,7 +25,9 @@ variant "contact points in the results" rest_on_segments bodies.block.surface=po
 # line of the grid, which gimp pays with 4 %. Half the block and half the load: the grid's left side is the plane of symmetry, with a contact point in it. The
 # pressure has to stand still, or what a run ends with is chance.
 half=(constants.left=0 'loads[0].force=[0, "-0.5*P*0.5*(1 - cos(pi*min(t/(8*T), 1)))"]' 'expect[1].reference=a' 'expect[2].reference=P/2')
-for place in "0.1 0.25" "0.2 0.0" "0.625 0.897" "0.55 0.0 half"; do
+places=("0.1 0.25" "0.625 0.897" "0.55 0.0 half")
+[ "${ABUT_ALL:-no}" = no ] || places+=("0.2 0.0")
+for place in "${places[@]}"; do
     read -r shift aside symmetric <<<"$place"
     more=()
     [ -n "${symmetric:-}" ] && more=("${half[@]}")
