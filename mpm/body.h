@@ -99,6 +99,7 @@ typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.
     int32_t count;
     double weight[8];
     double rest[2]; /* kg m/s: its momentum that is not of the line */
+    double heavy;   /* kg: the least mass of a node thereabouts that is not light */
 } mpm_tie;
 enum { MPM_LIGHT_MORE = 96 }; /* a stencil is longer by so many at most where light ones go by others; one of four nodes by 32 */
 
@@ -121,7 +122,7 @@ typedef struct mpm_kernel {
     int patch;                /* MPM_PATCH_NARROW or MPM_PATCH_WIDE */
     double reach;             /* cells: farther away than this in some direction a point has no weight */
     bool domains;             /* points have domains of their own: rows half, inverse_half, and extent where they follow the stretch */
-    bool ties_light;          /* nodes of next to no mass go by their neighbours: light_nodes.c */
+    double light;             /* of a full node's mass: nodes with less go by their neighbours, see light_nodes.c; 0: none does */
     bool convected;           /* points have parallelograms of their own: rows corners */
     bool moment, same_spread; /* apic takes moments of the velocities; D is the same everywhere but at sides: see transfer.inc */
     /* dt c/h at which the scheme is neutrally stable at frozen points, worst over places, with 1 .. 8 points per direction */
@@ -304,7 +305,7 @@ void mpm_grid_fetch_volumetric(const mpm_body *, size_t tile, int from, double *
 void mpm_grid_add_pairs(const mpm_body *, size_t tile, double *sum);                    /* what patches of pairs hold of its own nodes */
 void mpm_grid_limit_light(mpm_body *); /* USL: light nodes take their old velocity for the strain */
 
-/* light_nodes.c: where kernel->ties_light is not set, nothing is done and no tie is there */
+/* light_nodes.c: where kernel->light is 0, nothing is done and no tie is there */
 bool mpm_light_reserve(mpm_body *, size_t tiles); /* false: no memory */
 ab_status mpm_light_tie(mpm_body *, ab_report *); /* after mpm_grid_assemble: which nodes are light; their masses and momenta to others */
 void mpm_light_follow(mpm_body *);                /* after others have changed the velocities of nodes */

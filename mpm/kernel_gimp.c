@@ -52,7 +52,7 @@ static void carry(const mpm_body *body, const mpm_tile *tile, const double *bloc
 #define SPLINE 0
 #define BASIS "gimp"
 #define COURANT 0.803, 0.803, 0.664, 0.664, 0.608, 0.562, 0.525, 0.493 /* 1 and 3 bear a little more */
-#define TIES_LIGHT 0
+#define LIGHT (AXISYMMETRIC ? 0 : 0.05) /* a face 0.3 of a cell beyond a line of nodes */
 #define CARRY carry
 #if AXISYMMETRIC
 #define NAME(f) f##_gimp_axisymmetric

@@ -8,7 +8,7 @@
 #define SPLINE 0
 #define BASIS "linear"
 #define COURANT 0.564, 0.664, 0.632, 0.664, 0.664, 0.664, 0.664, 0.664 /* over places in both directions, nu up to 0.45: tests/verification/study_light_nodes.py */
-#define TIES_LIGHT (!AXISYMMETRIC) /* not where masses grow with the radius: those at the axis are no slivers */
+#define LIGHT (AXISYMMETRIC ? 0 : 0.15) /* not where masses grow with the radius: those at the axis are no slivers */
 #define CARRY NULL
 #if AXISYMMETRIC
 #define NAME(f) f##_linear_axisymmetric

@@ -1,4 +1,4 @@
-/* light_nodes.c: nodes with next to no mass, which the linear basis makes wherever a body's edge has just passed a node. A point eps of a cell behind it gives the node
+/* light_nodes.c: nodes with next to no mass, as there are wherever a body's edge has just passed a node. On the linear basis a point eps of a cell behind it gives the node
  * eps of its mass, but pulls at it with all its stress, so the node's frequency grows as 1/sqrt(eps) and no step is stable. As the slivers of cut elements are made
  * part of their neighbours (extended B-splines: Hoellig, Reif and Wipper 2001; aggregation of cut cells: Badia, Verdugo and Martin 2018), a light node here is no
  * degree of freedom: it goes on the line through two heavy nodes beside it,
@@ -8,22 +8,28 @@
  * As sum_j w_ij = 1 and sum_j w_ij x_j = x_i, momentum and angular momentum of the nodes are kept to rounding, and a uniform strain is felt as before, in the
  * light node's cells too. The internal force does just the work that the strain takes. Where a body is too thin for a second heavy node, the light one moves with
  * the first (w = 1): momentum is kept, angular momentum but for m_i h.
- * With LIGHT of a full node's mass the scheme has a limit at frozen points again: see COURANT in kernel_linear.c and test_stability_limits.c. */
+ * With `light` of a full node's mass on the linear basis the scheme has a limit at frozen points again: see COURANT in kernel_linear.c and test_stability_limits.c.
+ *
+ * Smooth bases (gimp, cpdi, bspline2) leave eps of the stress and eps^2 of the mass at the nodes beyond an edge. That is stable, but what points do there against each other is seen by
+ * these nodes alone: a mode 1/eps times slower than waves that nothing brakes, which rocks blocks at rest; and contact, which pushes by the basis at a face,
+ * moves such a node instead of the points behind it. With ties neither is there. Affine transfers leave the points nothing that nodes do not see, and keep the angular
+ * momentum to rounding, which lumped ties would not: they do without. */
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "mpm/body.h"
 
-static const double LIGHT = 0.15;  /* of the mass of a full node nearby: a node with less is light */
 static const double LOOKED_AT = 4; /* a full node may be heavier than at the start by this much */
 static const double LEFT = 0.5;    /* of the least mass of a heavy node is left to one that hands some on */
 
 enum { HANDED = OWN_RECORD - 1 }; /* mass that a heavy node has handed on, kg: the last place of its record */
 
+static bool ties(const mpm_body *body) { return body->kernel->light > 0.0 && !(body->kernel->moment && body->finish == MPM_FINISH_AFFINE); }
+
 bool mpm_light_reserve(mpm_body *body, size_t tiles) {
-    if (!body->kernel->ties_light) return true;
-    if (!body->light) body->light_limit = LIGHT * LOOKED_AT * body->material->density * body->h * body->h;
+    if (!ties(body)) return true;
+    if (!body->light) body->light_limit = body->kernel->light * LOOKED_AT * body->material->density * body->h * body->h;
     return ab_memory_grow((void **)&body->light, &body->light_capacity, tiles, sizeof *body->light) &&
            (body->order < 2 || ab_memory_grow((void **)&body->back, &body->back_capacity, tiles, 2 * AB_TILE_NODES * sizeof *body->back));
 }
@@ -49,16 +55,11 @@ static double mass_at(const mpm_body *body, uint32_t dof) { return dof == UINT32
 static const int ROUND[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
                                 {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}; /* rows and columns, then diagonals */
 
-/* The heaviest node near the heaviest one beside the node: what a full one holds thereabouts. */
+/* The heaviest of those beside the node and behind them: what a full one holds thereabouts. */
 static double full_mass(const mpm_body *body, size_t k, int n) {
-    double most = 0.0;
-    int at[2] = {0, 0};
-    for (int d = 0; d < 8; ++d) {
-        const double m = mass_at(body, beside(body, k, n, ROUND[d][0], ROUND[d][1]));
-        if (m > most) most = m, at[0] = ROUND[d][0], at[1] = ROUND[d][1];
-    }
-    double full = most;
-    for (int d = 0; d < 8; ++d) full = fmax(full, mass_at(body, beside(body, k, n, at[0] + ROUND[d][0], at[1] + ROUND[d][1])));
+    double full = 0.0;
+    for (int d = 0; d < 8; ++d)
+        for (int far = 1; far <= 2; ++far) full = fmax(full, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
     return full;
 }
 
@@ -67,12 +68,12 @@ static bool is_heavy(const mpm_body *body, uint32_t dof) {
 }
 
 /* Lines from the node through two heavy ones, `first` .. first + 3 of ROUND; or with `near_only` to one. */
-static void tie(const mpm_body *body, size_t k, int n, double mass, double heavy, int first, bool near_only, mpm_tie *t) {
+static void tie(const mpm_body *body, size_t k, int n, int first, bool near_only, mpm_tie *t) {
     int lines = 0;
     for (int d = first; d < first + 4; ++d) {
         const uint32_t near = beside(body, k, n, ROUND[d][0], ROUND[d][1]), far = beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]);
         if (!is_heavy(body, near)) continue;
-        if (!near_only && (!is_heavy(body, far) || mass_at(body, far) - record(body, far)[HANDED] - mass < LEFT * heavy)) continue;
+        if (!near_only && (!is_heavy(body, far) || record(body, far)[HANDED] == INFINITY)) continue;
         ++lines;
         t->to[t->count] = near, t->weight[t->count++] = near_only ? 1.0 : 2.0;
         if (!near_only) t->to[t->count] = far, t->weight[t->count++] = -1.0;
@@ -80,10 +81,11 @@ static void tie(const mpm_body *body, size_t k, int n, double mass, double heavy
     for (int e = 0; e < t->count; ++e) t->weight[e] /= lines;
 }
 
-static bool find_tie(mpm_body *body, size_t k, int n, mpm_tie *t) {
-    const double mass = mass_at(body, t->dof), heavy = LIGHT * full_mass(body, k, n);
-    for (int way = 0; way < 4 && t->count == 0; ++way) tie(body, k, n, mass, heavy, way % 2 ? 4 : 0, way > 1, t);
-    return t->count > 0; /* else nothing beside it is heavier */
+/* Rows and columns first, then diagonals; no tie where nothing beside the node is heavier. */
+static void find_tie(const mpm_body *body, mpm_tie *t) {
+    t->count = 0;
+    for (int way = 0; way < 4 && t->count == 0; ++way)
+        tie(body, t->dof / AB_TILE_NODES, (int)(t->dof % AB_TILE_NODES), way % 2 ? 4 : 0, way > 1, t);
 }
 
 static double on_line(const mpm_tie *t, const double *velocity, size_t stride, size_t c) {
@@ -154,37 +156,76 @@ static bool add_tie(mpm_body *body, const mpm_tie *t) {
     if (body->tie_count == body->tie_capacity &&
         !ab_memory_grow((void **)&body->ties, &body->tie_capacity, 2 * body->tie_count + 64, sizeof *t))
         return false;
-    if (body->line_count + 8 > body->line_capacity &&
-        !ab_memory_grow((void **)&body->lines, &body->line_capacity, 2 * body->line_count + 256, sizeof *body->lines))
-        return false;
     body->ties[body->tie_count++] = *t;
-    for (int e = 0; e < t->count; ++e) {
-        double *to = record(body, t->to[e]);
-        if (to[HANDED] == 0.0) body->lines[body->line_count++] = t->to[e], to[HANDED] = 1e-300;
-        if (t->weight[e] < 0.0) to[HANDED] -= t->weight[e] * mass_at(body, t->dof);
-    }
     return true;
+}
+
+/* Mass that each node may have to hand on to light ones; those with too little left are refused (INFINITY) and stay in the list of lines. True: some are that were not before. */
+static bool refuse_poor(mpm_body *body) {
+    size_t kept = 0;
+    for (size_t k = 0; k < body->line_count; ++k) {
+        double *handed = record(body, body->lines[k]) + HANDED;
+        if (*handed == INFINITY) body->lines[kept++] = body->lines[k];
+        else *handed = 0.0;
+    }
+    body->line_count = kept;
+    for (size_t k = 0; k < body->tie_count; ++k)
+        for (int e = 0; e < body->ties[k].count; ++e) {
+            const mpm_tie *t = body->ties + k;
+            if (t->weight[e] >= 0.0) continue;
+            double *handed = record(body, t->to[e]) + HANDED;
+            if (*handed == 0.0) body->lines[body->line_count++] = t->to[e];
+            *handed += mass_at(body, t->dof); /* all of it, however many lines share it */
+        }
+    bool some = false;
+    for (size_t k = 0; k < body->tie_count; ++k)
+        for (int e = 0; e < body->ties[k].count; ++e) {
+            const mpm_tie *t = body->ties + k;
+            double *handed = record(body, t->to[e]) + HANDED;
+            if (t->weight[e] < 0.0 && mass_at(body, t->to[e]) - *handed < LEFT * t->heavy) *handed = INFINITY, some = true;
+        }
+    return some;
+}
+
+/* The nodes that others go by, each once, in place of those that were looked at. */
+static void list_lines(mpm_body *body) {
+    for (size_t k = 0; k < body->line_count; ++k) record(body, body->lines[k])[HANDED] = 0.0;
+    body->line_count = 0;
+    for (size_t k = 0; k < body->tie_count; ++k)
+        for (int e = 0; e < body->ties[k].count; ++e) {
+            double *to = record(body, body->ties[k].to[e]);
+            if (to[HANDED] == 0.0) body->lines[body->line_count++] = body->ties[k].to[e], to[HANDED] = 1.0;
+        }
 }
 
 ab_status mpm_light_tie(mpm_body *body, ab_report *report) {
     for (size_t k = 0; k < body->line_count; ++k) record(body, body->lines[k])[HANDED] = 0.0;
     body->tie_count = body->line_count = 0;
-    if (!body->kernel->ties_light) return AB_OK;
+    if (!ties(body)) return AB_OK;
     for (size_t k = 0; k < body->tile_count; ++k) /* which are light, before any is a degree of freedom of another */
         for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
             const int n = __builtin_ctzll(bits);
             const double mass = body->own[(k * AB_TILE_NODES + (size_t)n) * OWN_RECORD + OWN_MASS];
-            if (!(mass < LIGHT * full_mass(body, k, n))) body->light[k] &= ~(UINT64_C(1) << n);
+            if (!(mass < body->kernel->light * full_mass(body, k, n))) body->light[k] &= ~(UINT64_C(1) << n);
         }
     for (size_t k = 0; k < body->tile_count; ++k)
         for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
             const int n = __builtin_ctzll(bits);
-            mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n};
-            if (find_tie(body, k, n, &t) && !add_tie(body, &t))
-                return ab_report_failure(report, "body '%s': no memory for %zu light nodes", body->domain.spec->name, body->tie_count);
+            mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n, .heavy = body->kernel->light * full_mass(body, k, n)};
+            find_tie(body, &t);
+            if (t.count && !add_tie(body, &t)) goto no_memory;
         }
-    if (body->tie_count) hand_on(body);
+    if (!body->tie_count) return AB_OK;
+    const size_t lines = 8 * body->tie_count; /* a node has eight, whether they are refused or not */
+    if (lines > body->line_capacity && !ab_memory_grow((void **)&body->lines, &body->line_capacity, lines + 256, sizeof *body->lines))
+        goto no_memory;
+    while (refuse_poor(body)) /* all ties at once: it must not matter whose turn comes first */
+        for (size_t k = 0; k < body->tie_count; ++k) find_tie(body, body->ties + k);
+    list_lines(body);
+    hand_on(body);
     return AB_OK;
+no_memory:
+    return ab_report_failure(report, "body '%s': no memory for %zu light nodes", body->domain.spec->name, body->tie_count);
 }
 
 void mpm_light_follow(mpm_body *body) {

@@ -1,5 +1,4 @@
 /* trace.c: what a contact finder sees of a material-point body at the nodes it shares with another: mass, gradients, and the points near each node. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -180,6 +179,9 @@ static bool list_near(mpm_body *body, const uint32_t *nodes, size_t count, size_
     return true;
 }
 
+/* Of the mass of a node that is not light: a light one with less shows no face, so that contact there need not be solved together with that of others. */
+static const double LITTLE = 0.03;
+
 ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *trace, ab_report *report) {
     mpm_body *body = (mpm_body *)domain;
     if (!reserve(body, count, needs)) goto no_memory;
@@ -212,6 +214,11 @@ ab_status mpm_trace(ab_domain *domain, const uint32_t *nodes, size_t count, uint
                 goto no_memory;
         }
     }
+    if (body->kernel->moment && (needs & AB_NEED_AREA_VECTOR)) /* what little they see of a face is borne by those that they go by */
+        for (size_t k = 0; body->tie_count && k < count; ++k) {
+            const mpm_tie *tie = mpm_light_tie_of(body, nodes[k]);
+            if (tie && t->list.mass[k] < LITTLE * tie->heavy) t->list.area_vector[k] = t->list.area_vector[ld + k] = 0.0;
+        }
     if (needs & AB_NEED_DENSITY_GRADIENT) {
         memset(t->list.density_gradient, 0, 2 * ld * sizeof(double));
         const size_t tiles = candidate_tiles(body, nodes, count);
