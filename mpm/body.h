@@ -97,6 +97,8 @@ typedef struct mpm_body mpm_body;
 typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.c */
     uint32_t dof, to[8];
     int32_t count;
+    int32_t axes;  /* along which it is light: 1 x, 2 y */
+    bool straight; /* on lines of heavy nodes along these */
     double weight[8];
     double rest[2]; /* kg m/s: its momentum that is not of the line */
     double heavy;   /* kg: the least mass of a node thereabouts that is not light */
@@ -173,9 +175,9 @@ struct mpm_body {
     bool axisymmetric; /* x is the radius, points are rings: volumes in m3, masses and forces of the whole ring */
     ab_f_bar f_bar;
     int threads;
-    struct mpm_share *shares; /* of the tiles, one a thread: see share.h */
-    size_t share_count;      /* 0: none yet */
-    uint64_t shared_version; /* of the tile list that is shared out */
+    struct mpm_share *shares;                /* of the tiles, one a thread: see share.h */
+    size_t share_count;                      /* 0: none yet */
+    uint64_t shared_version;                 /* of the tile list that is shared out */
     ab_side_kind side[AB_SIDES];             /* of the grid, in this stage */
     double h, inverse_h, origin[2], span[2]; /* cell, its inverse, grid corner, size of the grid, m */
 

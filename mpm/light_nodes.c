@@ -12,8 +12,10 @@
  *
  * Smooth bases (gimp, cpdi, bspline2) leave eps of the stress and eps^2 of the mass at the nodes beyond an edge. That is stable, but what points do there against each other is seen by
  * these nodes alone: a mode 1/eps times slower than waves that nothing brakes, which rocks blocks at rest; and contact, which pushes by the basis at a face,
- * moves such a node instead of the points behind it. With ties neither is there. Affine transfers leave the points nothing that nodes do not see, and keep the angular
- * momentum to rounding, which lumped ties would not: they do without. */
+ * moves such a node instead of the points behind it. With ties neither is there. A node counts as light there by the nodes of its own row or column, and goes by lines along
+ * that; one at a corner by those of both edges, w = (2, -1) x (2, -1): so the functions stay products of those along x and y, and a bar with nu 0 feels nothing of
+ * what it does along itself across it. (By diagonals, and by the fullest node all round, a vibrating bar that flies past lines had 0.15 of its stress across.)
+ * Affine transfers leave the points nothing that nodes do not see, and keep the angular momentum to rounding, which lumped ties would not: they do without. */
 #include <math.h>
 #include <string.h>
 
@@ -22,6 +24,8 @@
 
 static const double LOOKED_AT = 4; /* a full node may be heavier than at the start by this much */
 static const double LEFT = 0.5;    /* of the least mass of a heavy node is left to one that hands some on */
+
+enum { MOST = sizeof(((mpm_tie *)0)->to) / sizeof(uint32_t) }; /* nodes that a light one goes by, at most */
 
 enum { HANDED = OWN_RECORD - 1 }; /* mass that a heavy node has handed on, kg: the last place of its record */
 
@@ -67,10 +71,21 @@ static bool is_heavy(const mpm_body *body, uint32_t dof) {
     return mass_at(body, dof) > 0.0 && !(body->light[dof / AB_TILE_NODES] >> dof % AB_TILE_NODES & 1);
 }
 
-/* Lines from the node through two heavy ones, `first` .. first + 3 of ROUND; or with `near_only` to one. */
-static void tie(const mpm_body *body, size_t k, int n, int first, bool near_only, mpm_tie *t) {
+/* Less than `light` of what a node beside it along x (0) or y (1), or behind that one, holds. */
+static bool light_along(const mpm_body *body, size_t k, int n, int axis) {
+    double most = 0.0;
+    for (int d = 2 * axis; d < 2 * axis + 2; ++d)
+        for (int far = 1; far <= 2; ++far) most = fmax(most, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
+    return record(body, (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n)[OWN_MASS] < body->kernel->light * most;
+}
+
+/* Lines from the node through two heavy ones, `first` .. first + 3 of ROUND, of the axes (bits: 1 x, 2 y) where these are such; or with `near_only` to one. */
+static void tie(const mpm_body *body, int axes, int first, bool near_only, mpm_tie *t) {
+    const size_t k = t->dof / AB_TILE_NODES;
+    const int n = (int)(t->dof % AB_TILE_NODES);
     int lines = 0;
     for (int d = first; d < first + 4; ++d) {
+        if (first == 0 && !(axes >> d / 2 & 1)) continue;
         const uint32_t near = beside(body, k, n, ROUND[d][0], ROUND[d][1]), far = beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]);
         if (!is_heavy(body, near)) continue;
         if (!near_only && (!is_heavy(body, far) || record(body, far)[HANDED] == INFINITY)) continue;
@@ -81,11 +96,72 @@ static void tie(const mpm_body *body, size_t k, int n, int first, bool near_only
     for (int e = 0; e < t->count; ++e) t->weight[e] /= lines;
 }
 
-/* Rows and columns first, then diagonals; no tie where nothing beside the node is heavier. */
-static void find_tie(const mpm_body *body, mpm_tie *t) {
-    t->count = 0;
-    for (int way = 0; way < 4 && t->count == 0; ++way)
-        tie(body, t->dof / AB_TILE_NODES, (int)(t->dof % AB_TILE_NODES), way % 2 ? 4 : 0, way > 1, t);
+/* Adds `weight` of a node, or of those that it goes by on straight lines of its own, to a tie. False: it has none, or there is no room. */
+static bool go_by(const mpm_body *body, uint32_t dof, double weight, mpm_tie *t) {
+    if (!(mass_at(body, dof) > 0.0)) return false;
+    mpm_tie self = {.to = {dof}, .weight = {1.0}, .count = 1};
+    const mpm_tie *its = is_heavy(body, dof) ? &self : mpm_light_tie_of(body, dof);
+    if (!its || !its->count || (its != &self && !its->straight) || (its == &self && weight < 0.0 && record(body, dof)[HANDED] == INFINITY))
+        return false;
+    for (int e = 0; e < its->count; ++e) {
+        int f = 0;
+        while (f < t->count && t->to[f] != its->to[e]) ++f;
+        if (f == MOST) return false;
+        if (f == t->count) t->to[t->count] = its->to[e], t->weight[t->count++] = 0.0;
+        t->weight[f] += weight * its->weight[e];
+    }
+    return true;
+}
+
+/* Lines through two nodes of which one or both go by others: at a corner, over those of the two edges, so that the functions of a body with sides along the grid stay products
+ * of those of its two directions. */
+static void tie_by_ties(const mpm_body *body, int axes, mpm_tie *t) {
+    const size_t k = t->dof / AB_TILE_NODES;
+    const int n = (int)(t->dof % AB_TILE_NODES);
+    mpm_tie sum = {0};
+    int lines = 0;
+    for (int d = 0; d < 4; ++d) {
+        if (!(axes >> d / 2 & 1)) continue;
+        mpm_tie line = {0};
+        if (!go_by(body, beside(body, k, n, ROUND[d][0], ROUND[d][1]), 2.0, &line) ||
+            !go_by(body, beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]), -1.0, &line))
+            continue;
+        for (int e = 0; e < line.count; ++e) {
+            int f = 0;
+            while (f < sum.count && sum.to[f] != line.to[e]) ++f;
+            if (f == MOST) return; /* not on some of them: which would depend on whose turn comes first */
+            if (f == sum.count) sum.to[sum.count] = line.to[e], sum.weight[sum.count++] = 0.0;
+            sum.weight[f] += line.weight[e];
+        }
+        ++lines;
+    }
+    for (int e = 0; e < sum.count; ++e) t->to[e] = sum.to[e], t->weight[e] = sum.weight[e] / lines;
+    t->count = sum.count;
+}
+
+enum { X = 1, Y = 2, BOTH = 3 };
+
+/* The axes along which a node is light. On the linear basis, which is to have a limit of its step wherever a node is light at all, both. */
+static int axes_of(const mpm_body *body, const mpm_tie *t) {
+    if (!body->kernel->moment) return BOTH;
+    const size_t k = t->dof / AB_TILE_NODES;
+    const int n = (int)(t->dof % AB_TILE_NODES);
+    return (light_along(body, k, n, 0) ? X : 0) | (light_along(body, k, n, 1) ? Y : 0);
+}
+
+/* All ties anew: rows and columns first; then, with `moment`, those that go by others' ties; then diagonals; then one node alone. Each step is done with all nodes
+ * before the next is begun, so that it does not matter whose turn comes first. No tie where nothing beside the node is heavier. */
+static void find_ties(mpm_body *body) {
+    for (size_t k = 0; k < body->tie_count; ++k) {
+        mpm_tie *t = body->ties + k;
+        t->count = 0;
+        tie(body, t->axes, 0, false, t);
+        t->straight = t->count > 0;
+    }
+    for (size_t k = 0; body->kernel->moment && k < body->tie_count; ++k)
+        if (!body->ties[k].count) tie_by_ties(body, body->ties[k].axes, body->ties + k);
+    for (size_t k = 0; k < body->tie_count; ++k)
+        for (int way = 0; way < 4 && body->ties[k].count == 0; ++way) tie(body, BOTH, way % 2 ? 4 : 0, way > 1, body->ties + k);
 }
 
 static double on_line(const mpm_tie *t, const double *velocity, size_t stride, size_t c) {
@@ -165,8 +241,10 @@ static bool refuse_poor(mpm_body *body) {
     size_t kept = 0;
     for (size_t k = 0; k < body->line_count; ++k) {
         double *handed = record(body, body->lines[k]) + HANDED;
-        if (*handed == INFINITY) body->lines[kept++] = body->lines[k];
-        else *handed = 0.0;
+        if (*handed == INFINITY)
+            body->lines[kept++] = body->lines[k];
+        else
+            *handed = 0.0;
     }
     body->line_count = kept;
     for (size_t k = 0; k < body->tie_count; ++k)
@@ -175,7 +253,7 @@ static bool refuse_poor(mpm_body *body) {
             if (t->weight[e] >= 0.0) continue;
             double *handed = record(body, t->to[e]) + HANDED;
             if (*handed == 0.0) body->lines[body->line_count++] = t->to[e];
-            *handed += mass_at(body, t->dof); /* all of it, however many lines share it */
+            *handed += fmax(1.0, -t->weight[e]) * mass_at(body, t->dof); /* all of it, however many lines share it */
         }
     bool some = false;
     for (size_t k = 0; k < body->tie_count; ++k)
@@ -206,21 +284,27 @@ ab_status mpm_light_tie(mpm_body *body, ab_report *report) {
         for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
             const int n = __builtin_ctzll(bits);
             const double mass = body->own[(k * AB_TILE_NODES + (size_t)n) * OWN_RECORD + OWN_MASS];
-            if (!(mass < body->kernel->light * full_mass(body, k, n))) body->light[k] &= ~(UINT64_C(1) << n);
+            const bool light = body->kernel->moment ? light_along(body, k, n, 0) || light_along(body, k, n, 1)
+                                                    : mass < body->kernel->light * full_mass(body, k, n);
+            if (!light) body->light[k] &= ~(UINT64_C(1) << n);
         }
     for (size_t k = 0; k < body->tile_count; ++k)
         for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
             const int n = __builtin_ctzll(bits);
             mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n, .heavy = body->kernel->light * full_mass(body, k, n)};
-            find_tie(body, &t);
-            if (t.count && !add_tie(body, &t)) goto no_memory;
+            t.axes = axes_of(body, &t);
+            if (!add_tie(body, &t)) goto no_memory;
         }
     if (!body->tie_count) return AB_OK;
     const size_t lines = 8 * body->tie_count; /* a node has eight, whether they are refused or not */
     if (lines > body->line_capacity && !ab_memory_grow((void **)&body->lines, &body->line_capacity, lines + 256, sizeof *body->lines))
         goto no_memory;
-    while (refuse_poor(body)) /* all ties at once: it must not matter whose turn comes first */
-        for (size_t k = 0; k < body->tie_count; ++k) find_tie(body, body->ties + k);
+    do find_ties(body);
+    while (refuse_poor(body));
+    size_t kept = 0;
+    for (size_t k = 0; k < body->tie_count; ++k)
+        if (body->ties[k].count) body->ties[kept++] = body->ties[k];
+    body->tie_count = kept;
     list_lines(body);
     hand_on(body);
     return AB_OK;

@@ -10,21 +10,23 @@ typedef struct basis {
 } basis;
 
 /* Linear: its points pass a node. GIMP, CPDI: their domains do. Quadratic B-splines: their points pass the middle of a cell. */
-static const basis BASIS[] = {
-    {"linear", "linear", 0, 0.5}, {"gimp", "gimp", 0, 0}, {"gimp fixed", "{gimp: fixed}", 0, 0}, {"cpdi", "cpdi", 0, 0}, {"bspline2", "bspline2", 0.5, 0.5}};
+static const basis BASIS[] = {{"linear", "linear", 0, 0.5},
+                              {"gimp", "gimp", 0, 0},
+                              {"gimp fixed", "{gimp: fixed}", 0, 0},
+                              {"cpdi", "cpdi", 0, 0},
+                              {"bspline2", "bspline2", 0.5, 0.5}};
 enum { BASES = sizeof BASIS / sizeof *BASIS };
 
 /* A block of five by five cells, its upper edges `eps` beyond where a next node begins to be seen. */
 static const char *scene(const basis *b, double eps, int per_cell, double cfl, const char *update, const char *transfer) {
     static char text[2000];
     const double low = 2 + b->edge + b->point / sqrt(per_cell) + eps;
-    snprintf(
-        text, sizeof text,
-        "abut: 1\nspace: plane-strain\ntime: {end: 1e4, dt: %.17g}\ngrid: {from: [-1, -1], to: [12, 12], cell: 1}\n"
-        "materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}\n"
-        "bodies: {b: {method: material-points, material: m, shape: {box: [[%.17g, %.17g], [%.17g, %.17g]]}, basis: %s, fill: {rule: "
-        "regular, per_cell: %d}, update: %s, transfer: %s}}\n",
-        cfl, low, low, low + 5, low + 5, b->text, per_cell, update, transfer);
+    snprintf(text, sizeof text,
+             "abut: 1\nspace: plane-strain\ntime: {end: 1e4, dt: %.17g}\ngrid: {from: [-1, -1], to: [12, 12], cell: 1}\n"
+             "materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}\n"
+             "bodies: {b: {method: material-points, material: m, shape: {box: [[%.17g, %.17g], [%.17g, %.17g]]}, basis: %s, fill: {rule: "
+             "regular, per_cell: %d}, update: %s, transfer: %s}}\n",
+             cfl, low, low, low + 5, low + 5, b->text, per_cell, update, transfer);
     return text;
 }
 
@@ -91,8 +93,10 @@ static void test_momenta_are_kept(void **state) {
                     const totals before = of_points(body);
                     must(one, one->domain->ops->begin(one->domain, &one->step, one->report));
                     if (u == 1) must(one, one->domain->ops->early(one->domain, &one->step, one->report));
-                    if (b > 0 && t == 1) assert_int_equal(body->tie_count, 0); /* smooth bases: affine transfers do without */
-                    else assert_true(body->tie_count >= 11);                   /* the outer row and column of 6 x 6 */
+                    if (b > 0 && t == 1)
+                        assert_int_equal(body->tie_count, 0); /* smooth bases: affine transfers do without */
+                    else
+                        assert_true(body->tie_count >= 11); /* the outer row and column of 6 x 6 */
                     const totals old = of_nodes(body, OWN_OLD), trial = of_nodes(body, OWN_VELOCITY);
                     worst_to = fmax(worst_to, off(old, before, b > 0 || t != 1)); /* apic keeps affine fields in its place */
                     worst_forces = fmax(worst_forces, off(trial, old, true));
@@ -168,7 +172,8 @@ static void test_uniform_motion_and_strain_are_left_as_they_are(void **state) {
                 one_body_destroy(one);
             }
         print_message("%s: uniform motion off by %.1e m/s, uniform strain by %.1e of it\n", BASIS[b].name, motion, strain);
-        assert_true(motion < 1e-14 && strain < 2e-3); /* the strain is logarithmic or nearly so: of the second order in 4e-4, with the turn */
+        assert_true(motion < 1e-14 &&
+                    strain < 2e-3); /* the strain is logarithmic or nearly so: of the second order in 4e-4, with the turn */
     }
 }
 
@@ -209,14 +214,14 @@ static void test_every_step_up_to_the_limit_is_stable(void **state) {
     for (int b = 0; b < BASES; b++)
         for (int n = 0; n < 4; n++)
             for (int u = 0; u < 4; u++) {
-                const double share = b > 0 && u == 0 ? 0.7 : 0.95; /* usl: a mode that the points do not feel is stable to 2^-1/2 of the limit */
+                const double share =
+                    b > 0 && u == 0 ? 0.7 : 0.95; /* usl: a mode that the points do not feel is stable to 2^-1/2 of the limit */
                 double most = 0;
                 for (int e = -8; e < OFFSETS; e++) {
                     const double eps =
                         e < 0 ? -0.1 * e + 0.03 : EPS[e]; /* 0.13 .. 0.83, then EPS; none on a node, which rounding alone would cross */
                     one_body *one = one_body_create(scene(BASIS + b, eps, per_cell[n], 1, UPDATE[u], "flip"), 1);
                     mpm_body *body = one->mpm;
- if (getenv("NOTIES") && b) {body->light_limit = 0;}
                     const char *limit;
                     one->step.dt = share * one->domain->ops->critical_dt(one->domain, &limit);
                     double first = 0;
@@ -238,11 +243,14 @@ static void test_every_step_up_to_the_limit_is_stable(void **state) {
             }
 }
 
-/* The node that is the mirror image of one in the line x = middle (way 0) or y = middle (1). UINT32_MAX: the body has none there. */
+/* The node that is the mirror image of one in the line x = middle (way 0), y = middle (1) or x = y (2). UINT32_MAX: the body has none there. */
 static uint32_t mirrored(const mpm_body *body, uint32_t dof, int way, double middle) {
     double x[2], at[2];
     node_place(body, dof / AB_TILE_NODES, (int)(dof % AB_TILE_NODES), x);
-    x[way] = 2 * middle - x[way];
+    if (way < 2)
+        x[way] = 2 * middle - x[way];
+    else
+        node_place(body, dof / AB_TILE_NODES, (int)(dof % AB_TILE_NODES), at), x[0] = at[1], x[1] = at[0];
     for (size_t k = 0; k < body->tile_count; k++)
         for (int n = 0; n < AB_TILE_NODES; n++) {
             node_place(body, k, n, at);
@@ -254,34 +262,47 @@ static uint32_t mirrored(const mpm_body *body, uint32_t dof, int way, double mid
 /* Bodies so thin that light nodes of two sides want the same heavy ones: whichever came first would have them. */
 static void test_ties_of_a_symmetric_body_are_symmetric(void **state) {
     (void)state;
-    static const char *const shape[] = {"{box: [[%.17g, %.17g], [%.17g, %.17g]]}", "{polygon: [[%5$.17g, %2$.17g], [%3$.17g, %6$.17g], [%5$.17g, %4$.17g], [%1$.17g, %6$.17g]]}"};
+    static const char *const shape[] = {"{box: [[%.17g, %.17g], [%.17g, %.17g]]}",
+                                        "{polygon: [[%5$.17g, %2$.17g], [%3$.17g, %6$.17g], [%5$.17g, %4$.17g], [%1$.17g, %6$.17g]]}"};
     int refused = 0, count = 0;
     for (int b = 0; b < BASES; b++)
         for (int kind = 0; kind < 2; kind++)
             for (int place = 0; place < 4; place++)
                 for (int size = 0; size < 24; size++) {
                     const double middle[2] = {7 + 0.5 * (place % 2), 7 + 0.5 * (place / 2)}; /* on the lines x, y = 8 tiles meet */
-                    const double half[2] = {0.57 + 0.1234 * size, 0.61 + 0.0931 * ((7 * size) % 24)};
+                    const double half_x = 0.57 + 0.1234 * size;
+                    const double half[2] = {half_x, size % 2 ? half_x : 0.61 + 0.0931 * ((7 * size) % 24)};
                     char outline[400], text[1500];
                     snprintf(outline, sizeof outline, shape[kind], middle[0] - half[0], middle[1] - half[1], middle[0] + half[0],
                              middle[1] + half[1], middle[0], middle[1]);
-                    snprintf(text, sizeof text,
-                             "abut: 1\nspace: plane-strain\ntime: {end: 1, dt: 1e-3}\ngrid: {from: [0, 0], to: [16, 16], cell: 1}\n"
-                             "materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}\n"
-                             "bodies: {b: {method: material-points, material: m, shape: %s, basis: %s, fill: {rule: regular, per_cell: 16}, "
-                             "transfer: flip}}\n",
-                             outline, BASIS[b].text);
+                    snprintf(
+                        text, sizeof text,
+                        "abut: 1\nspace: plane-strain\ntime: {end: 1, dt: 1e-3}\ngrid: {from: [0, 0], to: [16, 16], cell: 1}\n"
+                        "materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}\n"
+                        "bodies: {b: {method: material-points, material: m, shape: %s, basis: %s, fill: {rule: regular, per_cell: 16}, "
+                        "transfer: flip}}\n",
+                        outline, BASIS[b].text);
                     one_body *one = one_body_create(text, 1);
                     mpm_body *body = one->mpm;
+                    for (size_t slot = 0; slot < body->block_count * 8;
+                         slot++) { /* masses from patch to patch, so that heavy nodes have little to hand on */
+                        if (!is_point(body, slot)) continue;
+                        const double a = floor(fabs(*point_row(body, slot, ROW_X) - middle[0]) / 0.7137),
+                                     far = floor(fabs(*point_row(body, slot, ROW_X + 1) - middle[1]) / 0.7137);
+                        const double any = 43.758 * sin(12.9898 * fmin(a, far) + 78.233 * fmax(a, far) + size);
+                        *point_row(body, slot, ROW_MASS) *= pow(10, -2 * (any - floor(any)));
+                    }
                     must(one, one->domain->ops->begin(one->domain, &one->step, one->report));
                     for (size_t k = 0; k < body->tie_count; k++)
-                        for (int way = 0; way < 2; way++) {
-                            if (body->own[(size_t)body->ties[k].dof * OWN_RECORD + OWN_MASS] < 1e-12) continue; /* rounding, which may have no image */
-                            const mpm_tie *t = body->ties + k, *other = mpm_light_tie_of(body, mirrored(body, t->dof, way, middle[way]));
+                        for (int way = 0; way < (half[0] == half[1] && middle[0] == middle[1] ? 3 : 2); way++) {
+                            if (body->own[(size_t)body->ties[k].dof * OWN_RECORD + OWN_MASS] < 1e-12)
+                                continue; /* rounding, which may have no image */
+                            const mpm_tie *t = body->ties + k,
+                                          *other = mpm_light_tie_of(body, mirrored(body, t->dof, way, middle[way % 2]));
                             assert_non_null(other);
                             assert_int_equal(other->count, t->count);
                             for (int e = 0; e < t->count; e++) {
-                                const uint32_t to = mirrored(body, t->to[e], way, middle[way]);
+                                const uint32_t to = mirrored(body, t->to[e], way, middle[way % 2]);
                                 int f = 0;
                                 while (f < other->count && other->to[f] != to) f++;
                                 assert_true(f < other->count && fabs(other->weight[f] - t->weight[e]) < 1e-15);
@@ -295,9 +316,8 @@ static void test_ties_of_a_symmetric_body_are_symmetric(void **state) {
     assert_true(count > 1000 && refused > 100);
 }
 
-
 /* A bar that vibrates as it flies slowly past the lines of the grid: nodes at its edges are light and heavy in turn. Range of the energy over what there is of
- * vibration, and the most stress across the bar (nu is 0) over that along it. */
+ * vibration, and the most stress across the bar (nu is 0) over that along it: a corner that went by a diagonal, or an edge that was taken for light where it ends, made 0.15. */
 typedef struct noise {
     double energy, across;
     int changes; /* steps with more or fewer ties than the one before */
@@ -346,14 +366,17 @@ static void test_ties_come_and_go_quietly(void **state) {
     for (int b = 1; b < BASES; b++)
         for (int u = 0; u < 4; u++) {
             const noise with = of_flight(BASIS + b, UPDATE[u], 5, true), without = of_flight(BASIS + b, UPDATE[u], 5, false);
-            print_message("%s, %s: energy within %.2e of the vibration with ties (%d changes), %.2e without; stress across %.2e and %.2e of that "
-                          "along\n",
-                          BASIS[b].name, UPDATE[u], with.energy, with.changes, without.energy, with.across, without.across);
+            print_message(
+                "%s, %s: energy within %.2e of the vibration with ties (%d changes), %.2e without; stress across %.2e and %.2e of that "
+                "along\n",
+                BASIS[b].name, UPDATE[u], with.energy, with.changes, without.energy, with.across, without.across);
+            assert_true(with.changes > 10 && with.energy < 1.02 * without.energy && with.across < 1e-11);
         }
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_momenta_are_kept), cmocka_unit_test(test_forces_do_the_work_of_the_strain),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_momenta_are_kept),
+                                       cmocka_unit_test(test_forces_do_the_work_of_the_strain),
                                        cmocka_unit_test(test_uniform_motion_and_strain_are_left_as_they_are),
                                        cmocka_unit_test(test_points_that_touch_are_where_they_are),
                                        cmocka_unit_test(test_ties_of_a_symmetric_body_are_symmetric),
