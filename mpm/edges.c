@@ -12,6 +12,7 @@
 #include "mpm/body.h"
 
 enum { ROWS = AB_EDGE_ROWS + 2 }; /* and the own traction */
+enum { MOST_OF_TIE = sizeof((mpm_tie *)0)->weight / sizeof(double) }; /* dofs of one node */
 
 struct mpm_edges {
     size_t boundary; /* of the scene */
@@ -46,7 +47,7 @@ static ab_status create_one(mpm_body *body, const ab_fill *fill, size_t boundary
     const size_t group = spec->nodes ? (size_t)(body->kernel->nodes * body->kernel->nodes) : 1, pieces = count;
     count *= group;
     *e = (struct mpm_edges){.boundary = boundary, .group = group, .hold = spec->hold, .count = count, .ld = (count + 7) / 8 * 8};
-    e->room = spec->nodes ? count : count * (MPM_STENCIL + MPM_LIGHT_MORE);
+    e->room = count * (spec->nodes ? MOST_OF_TIE : MPM_STENCIL + MPM_LIGHT_MORE);
     e->pieces = malloc(pieces * sizeof *e->pieces);
     e->rows = calloc(ROWS * e->ld, sizeof *e->rows);
     e->start = calloc(count + 1, sizeof *e->start);
@@ -86,8 +87,8 @@ static void hats(const mpm_body *body, const mpm_load *piece, mpm_reach *r) {
     for (int k = 0; k < 4; ++k) r->n[k] = (k % 2 ? s[0] : 1.0 - s[0]) * (k / 2 ? s[1] : 1.0 - s[1]);
 }
 
-/* Dofs of an edge and their weights, which add up to 1. */
-static size_t stencil_of(const mpm_body *body, const mpm_load *piece, uint32_t *dof, double *weight) {
+/* Nodes of an edge and their weights, which add up to 1; light ones among them. */
+static size_t nodes_of(const mpm_body *body, const mpm_load *piece, uint32_t *dof, double *weight) {
     mpm_reach r = mpm_load_reach(body, piece);
     if (!body->kernel->carry) hats(body, piece, &r);
     size_t count = 0;
@@ -100,7 +101,12 @@ static size_t stencil_of(const mpm_body *body, const mpm_load *piece, uint32_t *
         sum += r.n[i];
     }
     for (size_t i = 0; i < count; ++i) weight[i] /= sum;
-    return mpm_light_expand(body, dof, weight, count);
+    return count;
+}
+
+/* Dofs of an edge and their weights, which add up to 1: of a light node those that it goes by. */
+static size_t stencil_of(const mpm_body *body, const mpm_load *piece, uint32_t *dof, double *weight) {
+    return mpm_light_expand(body, dof, weight, nodes_of(body, piece, dof, weight));
 }
 
 /* Weights for changes of velocity: those of nodes that hardly carry mass go to the others. */
@@ -124,17 +130,20 @@ static void own_traction(const mpm_body *body, const mpm_load *piece, const doub
     t[1] = stress[24] * n[0] + stress[8] * n[1] + weight * n[1];
 }
 
-/* Each node of a piece's stencil by itself, with its share of the area. */
+/* Each node of a piece's stencil by itself, with its share of the area. A light one moves with those that it goes by, and hands them what it gets. */
 static void share_out(const mpm_body *body, struct mpm_edges *e, size_t piece, double area) {
-    uint32_t dof[MPM_STENCIL + MPM_LIGHT_MORE];
-    double weight[MPM_STENCIL + MPM_LIGHT_MORE];
-    const size_t count = stencil_of(body, e->pieces + piece, dof, weight);
+    uint32_t node[MPM_STENCIL];
+    double share[MPM_STENCIL];
+    const size_t count = nodes_of(body, e->pieces + piece, node, share);
     for (size_t g = 0; g < e->group; ++g) {
         const size_t k = piece * e->group + g, at = e->start[k];
-        const bool there = g < count && weight[g] > 0.0;
-        e->rows[4 * e->ld + k] = there ? weight[g] * area : 0.0;
-        e->start[k + 1] = at + there;
-        if (there) e->dof[at] = dof[g], e->weight[at] = e->answer[at] = 1.0;
+        const bool there = g < count && share[g] > 0.0;
+        e->rows[4 * e->ld + k] = there ? share[g] * area : 0.0;
+        e->start[k + 1] = at;
+        if (!there) continue;
+        e->dof[at] = node[g], e->weight[at] = 1.0;
+        e->start[k + 1] += mpm_light_expand(body, e->dof + at, e->weight + at, 1);
+        memcpy(e->answer + at, e->weight + at, (e->start[k + 1] - at) * sizeof *e->answer);
     }
 }
 
