@@ -50,14 +50,14 @@ def tube(label, f_bar, settings, limit, pressure, sign="<="):
         hold(f"tube {label}: pressure", found["pressure"], sign, pressure)
 
 
-# Locked without; with, 3 % on two meshes and any basis. What is left between cells is next to the corner of the clamp, where the pressure has no bound.
+# Locked without; with, 1 % on 12 cells and 2 % on 8, on any smooth basis. What is left between cells is next to the corner of the clamp, where the pressure has no bound.
 cook("without", "false", {}, 0.3, 1, 10, ">")
-cook("patch", "patch", {}, 3e-2, 1e-2, 0.1)
-cook("patch, 8 cells", "patch", {}, 3e-2, 1e-2, 0.15, cells=8)
-cook("cell, 8 cells", "cell", {}, 3e-2, 1e-2, 0.25, cells=8)
-cook("patch, 8 cells, quadratic splines", "patch", {"bodies.panel.basis": "bspline2"}, 3e-2, 1e-2, 0.2, cells=8)
-third = {"materials.m.nu": "1/3", "expect[0].reference": "21.5246*small", "constants.ramp": 3000}
-cook("without, nu = 1/3, 16 cells", "false", third, 3e-2, 0.3, 0.1, cells=16)
+cook("patch", "patch", {}, 1e-2, 1e-2, 0.1)
+cook("patch, 8 cells", "patch", {}, 2e-2, 1e-2, 0.15, cells=8)
+cook("cell, 8 cells", "cell", {}, 2e-2, 1e-2, 0.25, cells=8)
+cook("patch, 8 cells, quadratic splines", "patch", {"bodies.panel.basis": "bspline2"}, 2e-2, 1e-2, 0.2, cells=8)
+third = {"materials.m.nu": "1/3", "constants.rise": 21.5246, "constants.along": 0.862, "constants.up": 0.126, "constants.ramp": 3000}
+cook("without, nu = 1/3, 16 cells", "false", third, 1e-2, 0.3, 0.1, cells=16)
 cook("patch, nu = 1/3, 16 cells", "patch", third, 3e-2, 0.1, 0.1, cells=16)
 tube("without", "false", {}, 0.2, 1, ">")
 tube("cell", "cell", {}, 3e-2, 0.1)
