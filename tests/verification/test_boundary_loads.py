@@ -38,7 +38,7 @@ CASES = {
     "q8": ("plane-strain", "", FE.format("q8"), 1e-12),
     "rings": ("axisymmetric", "", FE.format("q4"), 1e-12),
     "points": ("plane-strain", GRID, POINTS, 1e-12),
-    "points at nodes": ("plane-strain", GRID, POINTS, 1e-12),  # light ones among them, which go by others
+    "points at nodes": ("plane-strain", GRID, POINTS, 1e-11),  # light ones go by others, whose weights of 2 and -1 make rounding larger
     "points sheared": ("plane-strain", GRID, POINTS, 1e-3),
 }
 
