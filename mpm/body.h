@@ -210,8 +210,9 @@ struct mpm_body {
     uint64_t *light;    /* per tile: a bit for each of its nodes with less */
     mpm_tie *ties;      /* of this step, by dof */
     uint32_t *lines;    /* nodes that others go by, each once */
+    double *work;       /* affine transfers: of light_mass.c, five numbers for each of the lines */
     double *back;       /* xpic, fmpm: a pair per node, what comes back */
-    size_t back_capacity, light_capacity, tie_count, tie_capacity, line_count, line_capacity;
+    size_t work_capacity, back_capacity, light_capacity, tie_count, tie_capacity, line_count, line_capacity;
     uint64_t version; /* of the tile list */
     bool scattered;   /* the patches hold this step's points already */
     bool sort_due;
@@ -318,6 +319,13 @@ const mpm_tie *mpm_light_tie_of(const mpm_body *, uint32_t dof); /* NULL: the no
 /* Nodes that a light one goes by in its place, with their weights; the new count. Room for MPM_LIGHT_MORE more. */
 size_t mpm_light_expand(const mpm_body *, uint32_t *dof, double *weight, size_t count);
 void mpm_light_destroy(mpm_body *);
+/* Place of a node that others go by in the list of these. */
+static inline size_t mpm_light_line(const mpm_body *body, uint32_t dof) { return (size_t)body->own[(size_t)dof * OWN_RECORD + OWN_RECORD - 1] - 1; }
+
+/* light_mass.c: velocities of the nodes that others go by, from momenta, by the mass matrix that keeps the moment of momentum. */
+bool mpm_light_mass_consistent(const mpm_body *);       /* whether the body does so: an affine transfer on a smooth basis */
+bool mpm_light_mass_reserve(mpm_body *);                /* false: no memory */
+void mpm_light_mass_solve(mpm_body *, size_t direction); /* work: the lines' momenta, kg m/s, on entry; their velocities behind them (at line_count) on return */
 
 /* damping.c */
 bool mpm_damp_reserve(mpm_body *, size_t tiles); /* nothing where the scene has no local damping; false: no memory */

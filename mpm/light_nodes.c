@@ -15,7 +15,7 @@
  * moves such a node instead of the points behind it. With ties neither is there. A node counts as light there by the nodes of its own row or column, and goes by lines along
  * that; one at a corner by those of both edges, w = (2, -1) x (2, -1): so the functions stay products of those along x and y, and a bar with nu 0 feels nothing of
  * what it does along itself across it. (By diagonals, and by the fullest node all round, a vibrating bar that flies past lines had 0.15 of its stress across.)
- * Affine transfers leave the points nothing that nodes do not see, and keep the angular momentum to rounding, which lumped ties would not: they do without. */
+ * Affine transfers keep the angular momentum to rounding, which the lumped mass of ties does not: theirs is in light_mass.c. */
 #include <math.h>
 #include <string.h>
 
@@ -27,9 +27,9 @@ static const double LEFT = 0.5;    /* of the least mass of a heavy node is left 
 
 enum { MOST = sizeof(((mpm_tie *)0)->to) / sizeof(uint32_t) }; /* nodes that a light one goes by, at most */
 
-enum { HANDED = OWN_RECORD - 1 }; /* mass that a heavy node has handed on, kg: the last place of its record */
+enum { HANDED = OWN_RECORD - 1 }; /* mass that a heavy node has handed on, kg: the last place of its record; then its place in the list of lines, from 1 */
 
-static bool ties(const mpm_body *body) { return body->kernel->light > 0.0 && !(body->kernel->moment && body->finish == MPM_FINISH_AFFINE); }
+static bool ties(const mpm_body *body) { return body->kernel->light > 0.0; }
 
 bool mpm_light_reserve(mpm_body *body, size_t tiles) {
     if (!ties(body)) return true;
@@ -39,6 +39,7 @@ bool mpm_light_reserve(mpm_body *body, size_t tiles) {
 }
 
 void mpm_light_destroy(mpm_body *body) {
+    ab_memory_give(body->work, body->work_capacity * sizeof *body->work);
     ab_memory_give(body->back, body->back_capacity * 2 * AB_TILE_NODES * sizeof *body->back);
     ab_memory_give(body->light, body->light_capacity * sizeof *body->light);
     ab_memory_give(body->ties, body->tie_capacity * sizeof *body->ties);
@@ -170,6 +171,18 @@ static double on_line(const mpm_tie *t, const double *velocity, size_t stride, s
     return line;
 }
 
+/* The lines' velocities change by the momenta that light nodes have beyond theirs. */
+static void move_lines(mpm_body *body, double *velocity, size_t stride) {
+    for (size_t c = 0; c < 2; ++c) {
+        memset(body->work, 0, body->line_count * sizeof *body->work);
+        for (size_t k = 0; k < body->tie_count; ++k)
+            for (int e = 0; e < body->ties[k].count; ++e)
+                body->work[mpm_light_line(body, body->ties[k].to[e])] += body->ties[k].weight[e] * body->ties[k].rest[c];
+        mpm_light_mass_solve(body, c);
+        for (size_t k = 0; k < body->line_count; ++k) velocity[body->lines[k] * stride + c] += body->work[body->line_count + k];
+    }
+}
+
 /* Velocities of nodes, a pair every `stride` doubles, each its own momentum over its own mass on entry (0 where a side holds it): light nodes hand their momentum to those
  * of their lines and move onto them. That is the transpose of what the points get from the nodes, and so makes no energy. With an affine transfer they hand on only
  * what their lines have not, p_i - m_i sum_j w_ij v_j, and a velocity that is affine in x is left as it is; what that could make, such a transfer takes. */
@@ -185,12 +198,15 @@ static void project(mpm_body *body, double *velocity, size_t stride) {
         const double *own = record(body, body->lines[k]);
         for (size_t c = 0; c < 2; ++c) velocity[body->lines[k] * stride + c] *= own[OWN_MASS] * own[OWN_INVERSE + c];
     }
-    for (size_t k = 0; k < body->tie_count; ++k) {
-        const mpm_tie *t = body->ties + k;
-        for (int e = 0; e < t->count; ++e)
-            for (size_t c = 0; c < 2; ++c)
-                velocity[t->to[e] * stride + c] += t->weight[e] * t->rest[c] * record(body, t->to[e])[OWN_INVERSE + c];
-    }
+    if (mpm_light_mass_consistent(body))
+        move_lines(body, velocity, stride);
+    else
+        for (size_t k = 0; k < body->tie_count; ++k) {
+            const mpm_tie *t = body->ties + k;
+            for (int e = 0; e < t->count; ++e)
+                for (size_t c = 0; c < 2; ++c)
+                    velocity[t->to[e] * stride + c] += t->weight[e] * t->rest[c] * record(body, t->to[e])[OWN_INVERSE + c];
+        }
     for (size_t k = 0; k < body->tie_count; ++k) {
         const mpm_tie *t = body->ties + k;
         const double *own = record(body, t->dof);
@@ -204,6 +220,7 @@ static double by_own_mass(const double *own, int c, double velocity) {
 }
 
 static void hand_on(mpm_body *body) {
+    const bool consistent = mpm_light_mass_consistent(body);
     for (size_t k = 0; k < body->line_count; ++k) { /* velocities become impulses of the forces */
         double *own = record(body, body->lines[k]);
         for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_MASS] * (own[OWN_VELOCITY + c] - own[OWN_OLD + c]);
@@ -223,7 +240,13 @@ static void hand_on(mpm_body *body) {
     project(body, body->own + OWN_OLD, OWN_RECORD);
     for (size_t k = 0; k < body->line_count; ++k) {
         double *own = record(body, body->lines[k]);
-        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + own[OWN_VELOCITY + c] * own[OWN_INVERSE + c];
+        for (int c = 0; c < 2 && !consistent; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + own[OWN_VELOCITY + c] * own[OWN_INVERSE + c];
+    }
+    for (size_t c = 0; c < 2 && consistent; ++c) {
+        for (size_t k = 0; k < body->line_count; ++k) body->work[k] = record(body, body->lines[k])[OWN_VELOCITY + c];
+        mpm_light_mass_solve(body, c);
+        for (size_t k = 0; k < body->line_count; ++k)
+            record(body, body->lines[k])[OWN_VELOCITY + c] = record(body, body->lines[k])[OWN_OLD + c] + body->work[body->line_count + k];
     }
     mpm_light_follow(body);
 }
@@ -272,7 +295,7 @@ static void list_lines(mpm_body *body) {
     for (size_t k = 0; k < body->tie_count; ++k)
         for (int e = 0; e < body->ties[k].count; ++e) {
             double *to = record(body, body->ties[k].to[e]);
-            if (to[HANDED] == 0.0) body->lines[body->line_count++] = body->ties[k].to[e], to[HANDED] = 1.0;
+            if (to[HANDED] == 0.0) body->lines[body->line_count++] = body->ties[k].to[e], to[HANDED] = (double)body->line_count;
         }
 }
 
@@ -299,6 +322,7 @@ ab_status mpm_light_tie(mpm_body *body, ab_report *report) {
     const size_t lines = 8 * body->tie_count; /* a node has eight, whether they are refused or not */
     if (lines > body->line_capacity && !ab_memory_grow((void **)&body->lines, &body->line_capacity, lines + 256, sizeof *body->lines))
         goto no_memory;
+    if (!mpm_light_mass_reserve(body)) goto no_memory;
     do find_ties(body);
     while (refuse_poor(body));
     size_t kept = 0;
