@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "core/boundary.h"
+#include "core/drag.h"
 #include "core/scene_text.h"
 #include "core/stages.h"
 #include "core/watchdog.h"
@@ -83,7 +84,7 @@ static bool keep_schedule(ab_schedule *s, ab_checkpoint *c) {
                       ab_keep_doubles(c, "energy_start", (double *)s->energy_start, energies) &&
                       ab_keep_doubles(c, "motion", (double *)s->motion, motions) && ab_keep_struct(c, "total", &s->total) &&
                       ab_keep_doubles(c, "total_now", &s->total_now, 1) && ab_keep_doubles(c, "total_start", &s->total_start, 1) &&
-                      ab_watchdog_keep(s, c) && ab_stages_keep(s, c);
+                      ab_watchdog_keep(s, c) && ab_drag_keep(s, c) && ab_stages_keep(s, c);
     ab_checkpoint_leave(c);
     return good;
 }

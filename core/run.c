@@ -4,6 +4,7 @@
 
 #include "core/checkpoint_run.h"
 #include "core/doubts.h"
+#include "core/drag.h"
 #include "core/memory.h"
 #include "core/phases.h"
 #include "core/plan.h"
@@ -159,6 +160,7 @@ ab_status ab_run(const ab_scene *scene, const ab_run_options *options, ab_report
     ab_schedule_view(s, &view);
     size_t missed = 0;
     warn_of_failures(s, report);
+    ab_drag_warn(s, report);
     const ab_status closed = ab_results_frame(results, &view, report); /* the end, as far as it came */
     if (!options->quiet) ab_results_table(results, &view, &facts, stdout);
     const ab_status written = ab_results_close(results, &view, &facts, &missed, report);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/boundary.h"
+#include "core/drag.h"
 #include "core/phases.h"
 #include "core/progress.h"
 #include "core/stages.h"
@@ -210,6 +211,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     step.early = any_early && in;
     ab_boundaries *edges = s->boundaries;
     ab_status status = AB_OK;
+    ab_drag_before(s);
     s->half_done = true;
     TIMED(PHASE_BEGIN, status = EACH(begin));
     AB_TRY(status);
@@ -246,6 +248,7 @@ ab_status ab_schedule_step(ab_schedule *s, ab_report *report) {
     if (s->end - s->time < 1e-9 * dt) s->time = s->end;
     s->half_done = false;
     ab_schedule_look(s);
+    ab_drag_after(s, &step);
     return s->stages ? ab_stages_after(s, &step, report) : AB_OK;
 }
 

@@ -19,6 +19,13 @@ typedef struct ab_run_options {
     ab_interaction_maker interact; /* for scenes with contacts */
 } ab_run_options;
 
+typedef struct ab_drag { /* drag.h; J */
+    double external, damping, potential; /* before the step */
+    double work, most;                   /* on what is driven, so far; the largest size of that */
+    double taken, fallen, since;         /* of the steps with damping in which that works: what damping took, what gravity gave; s: the first of them */
+    long steps;                          /* so many */
+} ab_drag;
+
 typedef struct ab_schedule { /* a scene on its way through time */
     const ab_scene *scene;
     ab_domain **domains;
@@ -40,6 +47,7 @@ typedef struct ab_schedule { /* a scene on its way through time */
     double watch_external, watch_potential; /* J: the largest so far; see watchdog.h */
     double watch_momentum[3];               /* kg m/s, of all bodies at the start */
     int watch_count;                        /* steps on end with too much energy made */
+    ab_drag drag;
     struct ab_stages *stages;               /* stages.h; NULL where the scene has none */
 } ab_schedule;
 
