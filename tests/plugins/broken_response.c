@@ -46,7 +46,7 @@ static int respond(void *self, ab_points *p, size_t first, size_t count) {
             if (FAULT == FASTER_ALONG_X)
                 *j -= 0.3 * fabs(p->normal[i]) * pressed * p->normal[c * n + i]; /* softer where it looks along x */
             if (FAULT == DIVIDES_BY_MASS) *j *= p->tangential_mass[i] / p->tangential_mass[i];
-            if (FAULT == THROWS) *j += 1.2 * pressed * p->normal[c * n + i];
+            if (FAULT == THROWS) *j += 3 * pressed * p->normal[c * n + i]; /* by far: what closes a gap first takes part of it */
         }
     }
     return code;
