@@ -247,6 +247,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
         mpm_light_quiet(body);
         mpm_damp(body, step);
     }
+    mpm_light_settle(body);
     mpm_light_follow(body);
     mpm_filter(body);
     const bool remap = mpm_maps_back(body->update);

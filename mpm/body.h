@@ -312,6 +312,7 @@ void mpm_grid_limit_light(mpm_body *); /* USL: light nodes take their old veloci
 bool mpm_light_reserve(mpm_body *, size_t tiles); /* false: no memory */
 ab_status mpm_light_tie(mpm_body *, ab_report *); /* after mpm_grid_assemble: which nodes are light; their masses and momenta to others */
 void mpm_light_follow(mpm_body *);                /* after others have changed the velocities of nodes */
+void mpm_light_settle(mpm_body *);                /* affine transfers, before points take up the step: all impulses of the step, given by lumped masses, by the consistent one */
 void mpm_light_quiet(mpm_body *);                 /* before mpm_damp: they are not damped on their own */
 void mpm_light_remap(mpm_body *);                 /* after mpm_grid_assemble_remap */
 void mpm_light_filter(mpm_body *, double *back);  /* what came back to the nodes (pairs), each by its own mass */

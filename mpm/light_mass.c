@@ -2,7 +2,9 @@
  *     M = D + sum_i m_i w_i w_i^T,   D the nodes' own masses.
  * Lumped, M_j = m_j + sum_i w_ij m_i, it keeps the momentum, but not its moment: a light node's part of that is m_i x_i x v_i, and w (x x v) at its line is not. Affine transfers, which keep
  * angular momentum to rounding, solve with M itself: T^T m T v = T^T p for T = (1, w), and as rigid motions are of the form T v, both momenta of v are those of p. M is
- * a lumped matrix but for a row of nodes along the edge, and conjugate gradients by the lumped masses find it in some ten steps. */
+ * a lumped matrix but for a row of nodes along the edge, and conjugate gradients by the lumped masses find it in some ten steps.
+ * Stress, loads, boundaries, contact and damping work on velocities one by one, and so by the lumped masses. What they have given together, sum J, is given anew by M at the step's
+ * end (mpm_light_settle). Part by part would not do: where two that balance, a dashpot and the stress behind it, went by different masses, a twentieth of each would be left. */
 #include <stdbool.h>
 #include <stddef.h>
 

@@ -136,6 +136,8 @@ static void tie_by_ties(const mpm_body *body, int axes, mpm_tie *t) {
         }
         ++lines;
     }
+    for (int e = 0; e < sum.count; ++e)
+        if (sum.weight[e] < 0.0 && record(body, sum.to[e])[HANDED] == INFINITY) return; /* also one that only an edge's line makes negative */
     for (int e = 0; e < sum.count; ++e) t->to[e] = sum.to[e], t->weight[e] = sum.weight[e] / lines;
     t->count = sum.count;
 }
@@ -220,7 +222,6 @@ static double by_own_mass(const double *own, int c, double velocity) {
 }
 
 static void hand_on(mpm_body *body) {
-    const bool consistent = mpm_light_mass_consistent(body);
     for (size_t k = 0; k < body->line_count; ++k) { /* velocities become impulses of the forces */
         double *own = record(body, body->lines[k]);
         for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_MASS] * (own[OWN_VELOCITY + c] - own[OWN_OLD + c]);
@@ -240,15 +241,24 @@ static void hand_on(mpm_body *body) {
     project(body, body->own + OWN_OLD, OWN_RECORD);
     for (size_t k = 0; k < body->line_count; ++k) {
         double *own = record(body, body->lines[k]);
-        for (int c = 0; c < 2 && !consistent; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + own[OWN_VELOCITY + c] * own[OWN_INVERSE + c];
-    }
-    for (size_t c = 0; c < 2 && consistent; ++c) {
-        for (size_t k = 0; k < body->line_count; ++k) body->work[k] = record(body, body->lines[k])[OWN_VELOCITY + c];
-        mpm_light_mass_solve(body, c);
-        for (size_t k = 0; k < body->line_count; ++k)
-            record(body, body->lines[k])[OWN_VELOCITY + c] = record(body, body->lines[k])[OWN_OLD + c] + body->work[body->line_count + k];
+        for (int c = 0; c < 2; ++c) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + own[OWN_VELOCITY + c] * own[OWN_INVERSE + c];
     }
     mpm_light_follow(body);
+}
+
+void mpm_light_settle(mpm_body *body) {
+    if (!body->tie_count || !mpm_light_mass_consistent(body)) return;
+    for (size_t c = 0; c < 2; ++c) {
+        for (size_t k = 0; k < body->line_count; ++k) {
+            const double *own = record(body, body->lines[k]);
+            body->work[k] = own[OWN_INVERSE + c] != 0.0 ? (own[OWN_VELOCITY + c] - own[OWN_OLD + c]) / own[OWN_INVERSE + c] : 0.0;
+        }
+        mpm_light_mass_solve(body, c);
+        for (size_t k = 0; k < body->line_count; ++k) {
+            double *own = record(body, body->lines[k]);
+            if (own[OWN_INVERSE + c] != 0.0) own[OWN_VELOCITY + c] = own[OWN_OLD + c] + body->work[body->line_count + k];
+        }
+    }
 }
 
 static bool add_tie(mpm_body *body, const mpm_tie *t) {
@@ -283,7 +293,7 @@ static bool refuse_poor(mpm_body *body) {
         for (int e = 0; e < body->ties[k].count; ++e) {
             const mpm_tie *t = body->ties + k;
             double *handed = record(body, t->to[e]) + HANDED;
-            if (t->weight[e] < 0.0 && mass_at(body, t->to[e]) - *handed < LEFT * t->heavy) *handed = INFINITY, some = true;
+            if (t->weight[e] < 0.0 && *handed != INFINITY && mass_at(body, t->to[e]) - *handed < LEFT * t->heavy) *handed = INFINITY, some = true;
         }
     return some;
 }
