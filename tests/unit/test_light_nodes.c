@@ -367,7 +367,7 @@ static void test_ties_come_and_go_quietly(void **state) {
                 "%s, %s: energy within %.2e of the vibration with ties (%d changes), %.2e without; stress across %.2e and %.2e of that "
                 "along\n",
                 BASIS[b].name, UPDATE[u], with.energy, with.changes, without.energy, with.across, without.across);
-            assert_true(with.changes > 10 && with.energy < 1.02 * without.energy && with.across < 1e-11);
+            assert_true(with.changes > 10 && with.energy < 1.02 * without.energy + 2e-4 && with.across < 1e-11);
         }
 }
 

@@ -45,7 +45,7 @@ assert fixed is None or fixed[STRESS][0] > 0.1
 for scene, body in (("stretch_large", "bar"), ("shear_large", "square")):
     found = errors(scene, **{f"bodies__{body}__basis": "gimp"})
     print(f"{scene} with gimp:", found)
-    assert found is None or any(error > 0.1 for error, _ in found.values())
+    assert found is None or any(error > 10 * most for error, most in found.values())
 
 for scene, settings in (("mms", {}), ("mms", {"bodies__square__basis": "cpdi"}), ("fe_mms", {})):
     off = [errors(scene, constants__cells=cells, **settings)["displacement along x"][0] for cells in (8, 16, 32)]
