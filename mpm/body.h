@@ -94,6 +94,11 @@ typedef struct mpm_reach { /* the nodes of a piece of outline: its weights, grad
 
 typedef struct mpm_body mpm_body;
 
+typedef struct mpm_light_tile {
+    uint64_t nodes; /* a bit for each of them with less than light_limit, then for each that is light */
+    double most;    /* kg: what the heaviest of them holds */
+} mpm_light_tile;
+
 typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.c */
     uint32_t dof, to[8];
     int32_t count;
@@ -101,7 +106,7 @@ typedef struct mpm_tie { /* a light node, which goes by others: see light_nodes.
     bool straight; /* on lines of heavy nodes along these */
     double weight[8];
     double rest[2]; /* kg m/s: its momentum that is not of the line */
-    double heavy;   /* kg: the least mass of a node thereabouts that is not light */
+    double heavy;   /* kg: the least mass of a node of its row or column that is not light */
 } mpm_tie;
 enum { MPM_LIGHT_MORE = 96 }; /* a stencil is longer by so many at most where light ones go by others; one of four nodes by 32 */
 
@@ -207,7 +212,7 @@ struct mpm_body {
     size_t sums_capacity;
     double last_limit;  /* s, of the step */
     double light_limit; /* kg: nodes with less are looked at in every step; 0: none */
-    uint64_t *light;    /* per tile: a bit for each of its nodes with less */
+    mpm_light_tile *light; /* per tile */
     mpm_tie *ties;      /* of this step, by dof */
     uint32_t *lines;    /* nodes that others go by, each once */
     double *work;       /* affine transfers: of light_mass.c, five numbers for each of the lines */

@@ -64,7 +64,7 @@ static void assemble_tile(mpm_body *body, size_t k, void *context) {
     double sum[8 * AB_TILE_NODES] __attribute__((aligned(64)));
     add_patches(body, tile, 8, sum);
     double *own = body->own + k * OWN_RECORD * AB_TILE_NODES;
-    uint64_t light = 0;
+    mpm_light_tile light = {0};
     for (int n = 0; n < AB_TILE_NODES; ++n, own += OWN_RECORD) {
         const double *s = sum + 8 * n;
         const double mass = s[NODE_MASS];
@@ -72,7 +72,8 @@ static void assemble_tile(mpm_body *body, size_t k, void *context) {
             *(v8 *)own = v8_set(0.0);
             continue;
         }
-        light |= (uint64_t)(mass < body->light_limit) << n;
+        light.nodes |= (uint64_t)(mass < body->light_limit) << n;
+        light.most = fmax(light.most, mass);
         const double inverse = 1.0 / mass;
         double free_[2] = {1.0, 1.0};
         if (tile->held) side_mask(body, tile, n, free_);

@@ -22,7 +22,7 @@
 #include "core/memory.h"
 #include "mpm/body.h"
 
-static const double LOOKED_AT = 4; /* a full node may be heavier than at the start by this much */
+static const double LOOKED_AT = 4; /* where a full node is heavier than at the start by more than this, all are looked at again */
 static const double LEFT = 0.5;    /* of the least mass of a heavy node is left to one that hands some on */
 
 enum { MOST = sizeof(((mpm_tie *)0)->to) / sizeof(uint32_t) }; /* nodes that a light one goes by, at most */
@@ -69,15 +69,20 @@ static double full_mass(const mpm_body *body, size_t k, int n) {
 }
 
 static bool is_heavy(const mpm_body *body, uint32_t dof) {
-    return mass_at(body, dof) > 0.0 && !(body->light[dof / AB_TILE_NODES] >> dof % AB_TILE_NODES & 1);
+    return mass_at(body, dof) > 0.0 && !(body->light[dof / AB_TILE_NODES].nodes >> dof % AB_TILE_NODES & 1);
+}
+
+/* The heaviest of those beside the node along x (0) or y (1) and behind them. */
+static double most_along(const mpm_body *body, size_t k, int n, int axis) {
+    double most = 0.0;
+    for (int d = 2 * axis; d < 2 * axis + 2; ++d)
+        for (int far = 1; far <= 2; ++far) most = fmax(most, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
+    return most;
 }
 
 /* Less than `light` of what a node beside it along x (0) or y (1), or behind that one, holds. */
 static bool light_along(const mpm_body *body, size_t k, int n, int axis) {
-    double most = 0.0;
-    for (int d = 2 * axis; d < 2 * axis + 2; ++d)
-        for (int far = 1; far <= 2; ++far) most = fmax(most, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
-    return record(body, (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n)[OWN_MASS] < body->kernel->light * most;
+    return record(body, (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n)[OWN_MASS] < body->kernel->light * most_along(body, k, n, axis);
 }
 
 /* Lines from the node through two heavy ones, `first` .. first + 3 of ROUND, of the axes (bits: 1 x, 2 y) where these are such; or with `near_only` to one. */
@@ -144,12 +149,16 @@ static void tie_by_ties(const mpm_body *body, int axes, mpm_tie *t) {
 
 enum { X = 1, Y = 2, BOTH = 3 };
 
-/* The axes along which a node is light. On the linear basis, which is to have a limit of its step wherever a node is light at all, both. */
-static int axes_of(const mpm_body *body, const mpm_tie *t) {
-    if (!body->kernel->moment) return BOTH;
-    const size_t k = t->dof / AB_TILE_NODES;
-    const int n = (int)(t->dof % AB_TILE_NODES);
-    return (light_along(body, k, n, 0) ? X : 0) | (light_along(body, k, n, 1) ? Y : 0);
+/* The tie of a light node: along which axes it is light, and from what mass on a node there is heavy: by those of the same row or column, else what holds for the rows inside a body
+ * would not for those at its edges, where nodes have half of the mass. On the linear basis, which is to have a limit of its step wherever a node is light at all, both axes and all round. */
+static mpm_tie tie_of(const mpm_body *body, size_t k, int n) {
+    mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n};
+    double full = 0.0;
+    for (int axis = 0; body->kernel->moment && axis < 2; ++axis)
+        if (light_along(body, k, n, axis)) t.axes |= 1 << axis, full = fmax(full, most_along(body, k, n, axis));
+    if (!body->kernel->moment) t.axes = BOTH, full = full_mass(body, k, n);
+    t.heavy = body->kernel->light * full;
+    return t;
 }
 
 /* All ties anew: rows and columns first; then, with `moment`, those that go by others' ties; then diagonals; then one node alone. Each step is done with all nodes
@@ -309,23 +318,35 @@ static void list_lines(mpm_body *body) {
         }
 }
 
+/* Marks what may be light in a body that has been compressed so far that the mass to look below, which goes by the density of the start, is too little. */
+static void look_again(mpm_body *body) {
+    double most = 0.0;
+    for (size_t k = 0; k < body->tile_count; ++k) most = fmax(most, body->light[k].most);
+    const double limit = body->kernel->light * most;
+    if (!(body->light_limit > 0.0 && limit > body->light_limit)) return;
+    for (size_t k = 0; k < body->tile_count; ++k)
+        for (int n = 0; n < AB_TILE_NODES; ++n) {
+            const double mass = mass_at(body, (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n);
+            body->light[k].nodes |= (uint64_t)(mass > 0.0 && mass < limit) << n;
+        }
+}
+
 ab_status mpm_light_tie(mpm_body *body, ab_report *report) {
     for (size_t k = 0; k < body->line_count; ++k) record(body, body->lines[k])[HANDED] = 0.0;
     body->tie_count = body->line_count = 0;
     if (!ties(body)) return AB_OK;
+    look_again(body);
     for (size_t k = 0; k < body->tile_count; ++k) /* which are light, before any is a degree of freedom of another */
-        for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
+        for (uint64_t bits = body->light[k].nodes; bits; bits &= bits - 1) {
             const int n = __builtin_ctzll(bits);
             const double mass = body->own[(k * AB_TILE_NODES + (size_t)n) * OWN_RECORD + OWN_MASS];
             const bool light = body->kernel->moment ? light_along(body, k, n, 0) || light_along(body, k, n, 1)
                                                     : mass < body->kernel->light * full_mass(body, k, n);
-            if (!light) body->light[k] &= ~(UINT64_C(1) << n);
+            if (!light) body->light[k].nodes &= ~(UINT64_C(1) << n);
         }
     for (size_t k = 0; k < body->tile_count; ++k)
-        for (uint64_t bits = body->light[k]; bits; bits &= bits - 1) {
-            const int n = __builtin_ctzll(bits);
-            mpm_tie t = {.dof = (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n, .heavy = body->kernel->light * full_mass(body, k, n)};
-            t.axes = axes_of(body, &t);
+        for (uint64_t bits = body->light[k].nodes; bits; bits &= bits - 1) {
+            const mpm_tie t = tie_of(body, k, __builtin_ctzll(bits));
             if (!add_tie(body, &t)) goto no_memory;
         }
     if (!body->tie_count) return AB_OK;

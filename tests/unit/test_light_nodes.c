@@ -358,6 +358,63 @@ static noise of_flight(const basis *b, const char *update, double cells, bool wi
     return n;
 }
 
+/* What node n of tile k goes by, a bit for each of the places -2..2 along x; 1 << 2, which no node goes by: it is no light one. */
+static int along_the_row(const mpm_body *body, uint32_t dof) {
+    const mpm_tie *t = mpm_light_tie_of(body, dof);
+    if (!t) return 1 << 2;
+    double at[2], x[2];
+    node_place(body, dof / AB_TILE_NODES, (int)(dof % AB_TILE_NODES), at);
+    int by = 0;
+    for (int e = 0; e < t->count; e++) {
+        node_place(body, t->to[e] / AB_TILE_NODES, (int)(t->to[e] % AB_TILE_NODES), x);
+        assert_true(fabs(x[1] - at[1]) < 1e-12);
+        by |= 1 << ((int)lrint(x[0] - at[0]) + 2);
+    }
+    return by;
+}
+
+/* A bar whose mass varies along it alone, and may be ten times that of the start. Nodes at its long edges have half of what those in the middle have: each row must have the same ties, or what
+ * the bar does along itself bends it. */
+static void test_ties_are_alike_in_all_rows_of_a_bar(void **state) {
+    (void)state;
+    int ties = 0, single = 0;
+    for (int b = 1; b < BASES; b++)
+        for (int run = 0; run < 100; run++) {
+            char text[1500];
+            const double low = 2 + BASIS[b].edge + 0.5 * BASIS[b].point;
+            snprintf(text, sizeof text,
+                     "abut: 1\nspace: plane-strain\ntime: {end: 1, dt: 1e-3}\ngrid: {from: [0, 0], to: [24, 8], cell: 1}\n"
+                     "materials: {m: {model: linear-elastic, E: 1, nu: 0, density: 1}}\n"
+                     "bodies: {b: {method: material-points, material: m, shape: {box: [[2.3, %g], [21.3, %g]]}, basis: %s, fill: {rule: regular, "
+                     "per_cell: 4}, transfer: flip}}\n",
+                     low, low + 3, BASIS[b].text);
+            one_body *one = one_body_create(text, 1);
+            mpm_body *body = one->mpm;
+            double mass[34];
+            for (int i = 0; i < 34; i++) mass[i] = pow(10, random_between(-3, 1));
+            for (size_t slot = 0; slot < body->block_count * 8; slot++)
+                if (is_point(body, slot)) *point_row(body, slot, ROW_MASS) *= mass[(int)(*point_row(body, slot, ROW_X) / 0.7137)];
+            must(one, one->domain->ops->begin(one->domain, &one->step, one->report));
+            int by[4][24];
+            for (size_t k = 0; k < body->tile_count; k++)
+                for (int n = 0; n < AB_TILE_NODES; n++) {
+                    double x[2];
+                    node_place(body, k, n, x);
+                    const int row = (int)lrint(x[1] - (low > 2 ? 3 : 2)), column = (int)lrint(x[0]);
+                    if (row < 0 || row > (low > 2 ? 1 : 3) || column < 0 || column > 23) continue;
+                    by[row][column] = along_the_row(body, (uint32_t)(k * AB_TILE_NODES) + (uint32_t)n);
+                }
+            for (int i = 2; i < 22; i++) {
+                ties += by[0][i] != 1 << 2;
+                single += by[0][i] == 1 << 1 || by[0][i] == 1 << 3;
+                for (int row = 1; row < (low > 2 ? 2 : 4); row++) assert_int_equal(by[row][i], by[0][i]);
+            }
+            one_body_destroy(one);
+        }
+    print_message("%d ties, %d of them to one node\n", ties, single);
+    assert_true(ties > 500 && single > 3);
+}
+
 static void test_ties_come_and_go_quietly(void **state) {
     (void)state;
     for (int b = 1; b < BASES; b++)
@@ -377,6 +434,7 @@ int main(void) {
                                        cmocka_unit_test(test_uniform_motion_and_strain_are_left_as_they_are),
                                        cmocka_unit_test(test_points_that_touch_are_where_they_are),
                                        cmocka_unit_test(test_ties_of_a_symmetric_body_are_symmetric),
+                                       cmocka_unit_test(test_ties_are_alike_in_all_rows_of_a_bar),
                                        cmocka_unit_test(test_ties_come_and_go_quietly),
                                        cmocka_unit_test(test_every_step_up_to_the_limit_is_stable)};
     return cmocka_run_group_tests(tests, NULL, NULL);
