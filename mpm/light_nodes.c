@@ -184,6 +184,7 @@ static double on_line(const mpm_tie *t, const double *velocity, size_t stride, s
 
 /* The lines' velocities change by the momenta that light nodes have beyond theirs. */
 static void move_lines(mpm_body *body, double *velocity, size_t stride) {
+    if (!body->line_count) return; /* there may be no place to work in */
     for (size_t c = 0; c < 2; ++c) {
         memset(body->work, 0, body->line_count * sizeof *body->work);
         for (size_t k = 0; k < body->tie_count; ++k)

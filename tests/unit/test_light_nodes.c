@@ -379,7 +379,7 @@ static void test_ties_are_alike_in_all_rows_of_a_bar(void **state) {
     (void)state;
     int ties = 0, single = 0;
     for (int b = 1; b < BASES; b++)
-        for (int run = 0; run < 100; run++) {
+        for (int run = 0; run < 400; run++) {
             char text[1500];
             const double low = 2 + BASIS[b].edge + 0.5 * BASIS[b].point;
             snprintf(text, sizeof text,
