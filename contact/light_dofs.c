@@ -2,7 +2,7 @@
  * eps^2 of a node's mass and of each push (by the basis at the material points), but eps of the stress: they fly off, as 1/eps, and their points creep after them, the slower the
  * smaller eps is, by up to what the row is strained. On shared nodes (multi_velocity) contact acts there itself; between surfaces such a dof goes with the
  * heavier ones of the points it serves, as slivers of cut elements are made part of their neighbours (Badia, Verdugo and Martin 2018): what it has of momentum beyond theirs is
- * theirs, in proportion to the same weights. Momentum is kept to rounding; its moment but for that of eps of the stress, over a cell at most. */
+ * theirs, in proportion to the same weights. Most bases have tied such nodes before it comes to contact (mpm/light_nodes.c); bspline3 and bodies about an axis have not. Momentum is kept to rounding; its moment but for that of eps of the stress, over a cell at most. */
 #include <stdlib.h>
 #include <string.h>
 

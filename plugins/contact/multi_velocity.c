@@ -220,7 +220,7 @@ static const double LEAST_AREA = 1e-3, LEAST_PAST = 1e-8, ALIGNED = 0.99, LIGHT 
 
 /* A body that only just reaches a node has no say in its normal, and none in contact at corners. But a face along a line of the grid that has passed it by eps of a cell leaves
  * eps of its area at the nodes beyond, and eps squared of mass. Left out, such a node is a free one, flies off with the stress of the points behind the face, and
- * strains them by it: bodies at rest creep into each other.
+ * strains them by it: bodies at rest creep into each other. Where such nodes go by their neighbours (mpm/light_nodes.c) they show no face here; those of bodies about an axis do.
  * True where the face of the light body t has passed the node: n out of it, l its area over that of a cell's face. */
 static int just_past(const ab_trace *t, const ab_trace *other, size_t i, const double n[3], double l) {
     if (!(l > LEAST_PAST && l <= LEAST_AREA && t->mass[i] < LIGHT * other->mass[i])) return 0;
