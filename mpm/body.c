@@ -35,6 +35,7 @@ static void destroy(ab_domain *domain) {
     ab_memory_give(body->own, body->own_capacity * sizeof(double) * OWN_RECORD * AB_TILE_NODES);
     ab_memory_give(body->filter, body->filter_capacity * sizeof(double) * FILTER_RECORD * AB_TILE_NODES);
     ab_memory_give(body->volumetric, body->volumetric_capacity * sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES);
+    ab_memory_give(body->slivers, body->sliver_capacity * sizeof *body->slivers);
     ab_memory_give(body->sums, body->sums_capacity * sizeof *body->sums);
     ab_memory_give(body->patches, body->patch_capacity * sizeof(double) * mpm_patch_doubles(body));
     mpm_light_destroy(body);

@@ -207,7 +207,8 @@ struct mpm_body {
     double *filter;     /* FILTER_RECORD * AB_TILE_NODES per tile; NULL but for xpic and fmpm of order 2 and more */
     double *damped;     /* m/s, a pair per node: its change by damping in this step; NULL: not kept */
     double *volumetric; /* VOLUMETRIC_RECORD * AB_TILE_NODES per tile; NULL without f_bar */
-    size_t own_capacity, filter_capacity, damped_capacity, volumetric_capacity, patch_capacity, patch_count;
+    uint64_t *slivers;  /* per tile, a bit a cell: mpm/volumetric.c */
+    size_t own_capacity, filter_capacity, damped_capacity, volumetric_capacity, sliver_capacity, patch_capacity, patch_count;
     mpm_sums *sums; /* per tile */
     size_t sums_capacity;
     double last_limit;  /* s, of the step */
@@ -300,6 +301,13 @@ ab_status mpm_tiles_build(mpm_body *, const uint64_t *filled, size_t count,
 long mpm_tile_find(const uint64_t *keys, size_t count, uint64_t key);    /* place, or -1 */
 size_t mpm_tile_of_block(const mpm_body *, uint32_t block);              /* that owns it: tiles with points hold ascending runs */
 uint32_t mpm_dof_of(const mpm_body *, const mpm_tile *, int patch_node); /* the node's number among the body's dofs */
+/* The node that is (dx, dy) from node n of a tile, at most a tile away; UINT32_MAX where the body has none. */
+static inline uint32_t mpm_dof_beside(const mpm_body *body, size_t tile, int n, int dx, int dy) {
+    const int i = n % AB_TILE + dx, j = n / AB_TILE + dy, tx = i < 0 ? -1 : i >= AB_TILE, ty = j < 0 ? -1 : j >= AB_TILE;
+    const int32_t other = body->tiles[tile].around[(ty + 1) * 3 + tx + 1];
+    if (other < 0) return UINT32_MAX;
+    return (uint32_t)other * AB_TILE_NODES + (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE);
+}
 
 /* grid.c */
 void mpm_grid_assemble(mpm_body *, const ab_step *, bool forces);              /* old velocity, trial velocity */

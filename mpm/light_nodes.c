@@ -46,14 +46,6 @@ void mpm_light_destroy(mpm_body *body) {
     ab_memory_give(body->lines, body->line_capacity * sizeof *body->lines);
 }
 
-/* The node that is (dx, dy) from node n of a tile, at most a tile away; UINT32_MAX where the body has none. */
-static uint32_t beside(const mpm_body *body, size_t k, int n, int dx, int dy) {
-    const int i = n % AB_TILE + dx, j = n / AB_TILE + dy, tx = i < 0 ? -1 : i >= AB_TILE, ty = j < 0 ? -1 : j >= AB_TILE;
-    const int32_t tile = body->tiles[k].around[(ty + 1) * 3 + tx + 1];
-    if (tile < 0) return UINT32_MAX;
-    return (uint32_t)tile * AB_TILE_NODES + (uint32_t)((j - ty * AB_TILE) * AB_TILE + i - tx * AB_TILE);
-}
-
 static double *record(const mpm_body *body, uint32_t dof) { return body->own + (size_t)dof * OWN_RECORD; }
 static double mass_at(const mpm_body *body, uint32_t dof) { return dof == UINT32_MAX ? 0.0 : record(body, dof)[OWN_MASS]; }
 
@@ -64,7 +56,7 @@ static const int ROUND[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
 static double full_mass(const mpm_body *body, size_t k, int n) {
     double full = 0.0;
     for (int d = 0; d < 8; ++d)
-        for (int far = 1; far <= 2; ++far) full = fmax(full, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
+        for (int far = 1; far <= 2; ++far) full = fmax(full, mass_at(body, mpm_dof_beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
     return full;
 }
 
@@ -76,7 +68,7 @@ static bool is_heavy(const mpm_body *body, uint32_t dof) {
 static double most_along(const mpm_body *body, size_t k, int n, int axis) {
     double most = 0.0;
     for (int d = 2 * axis; d < 2 * axis + 2; ++d)
-        for (int far = 1; far <= 2; ++far) most = fmax(most, mass_at(body, beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
+        for (int far = 1; far <= 2; ++far) most = fmax(most, mass_at(body, mpm_dof_beside(body, k, n, far * ROUND[d][0], far * ROUND[d][1])));
     return most;
 }
 
@@ -92,7 +84,7 @@ static void tie(const mpm_body *body, int axes, int first, bool near_only, mpm_t
     int lines = 0;
     for (int d = first; d < first + 4; ++d) {
         if (first == 0 && !(axes >> d / 2 & 1)) continue;
-        const uint32_t near = beside(body, k, n, ROUND[d][0], ROUND[d][1]), far = beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]);
+        const uint32_t near = mpm_dof_beside(body, k, n, ROUND[d][0], ROUND[d][1]), far = mpm_dof_beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]);
         if (!is_heavy(body, near)) continue;
         if (!near_only && (!is_heavy(body, far) || record(body, far)[HANDED] == INFINITY)) continue;
         ++lines;
@@ -129,8 +121,8 @@ static void tie_by_ties(const mpm_body *body, int axes, mpm_tie *t) {
     for (int d = 0; d < 4; ++d) {
         if (!(axes >> d / 2 & 1)) continue;
         mpm_tie line = {0};
-        if (!go_by(body, beside(body, k, n, ROUND[d][0], ROUND[d][1]), 2.0, &line) ||
-            !go_by(body, beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]), -1.0, &line))
+        if (!go_by(body, mpm_dof_beside(body, k, n, ROUND[d][0], ROUND[d][1]), 2.0, &line) ||
+            !go_by(body, mpm_dof_beside(body, k, n, 2 * ROUND[d][0], 2 * ROUND[d][1]), -1.0, &line))
             continue;
         for (int e = 0; e < line.count; ++e) {
             int f = 0;

@@ -37,7 +37,7 @@ void mpm_plan(const ab_domain *domain, ab_plan_body *p) {
     p->cells = count_cells(body);
     p->bytes = body->block_capacity * (64 * (size_t)body->rows.count + 64) + body->own_capacity * 8 * OWN_RECORD * AB_TILE_NODES +
                body->patch_capacity * 8 * mpm_patch_doubles(body) + body->filter_capacity * 8 * FILTER_RECORD * AB_TILE_NODES +
-               body->volumetric_capacity * 8 * VOLUMETRIC_RECORD * AB_TILE_NODES + body->light_capacity * sizeof *body->light +
+               body->volumetric_capacity * 8 * VOLUMETRIC_RECORD * AB_TILE_NODES + body->sliver_capacity * sizeof *body->slivers + body->light_capacity * sizeof *body->light +
                body->tie_capacity * sizeof *body->ties + body->line_capacity * sizeof *body->lines + body->work_capacity * sizeof *body->work +
                body->back_capacity * 16 * AB_TILE_NODES + body->tile_capacity * (sizeof(mpm_tile) + sizeof(uint64_t) + sizeof(mpm_sums)) +
                (body->birth ? body->born * 16 : 0) + (body->slot ? body->born * 4 : 0) +

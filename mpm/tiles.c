@@ -59,6 +59,7 @@ ab_status mpm_tiles_build(mpm_body *body, const uint64_t *filled, size_t count, 
          ab_memory_grow((void **)&body->filter, &body->filter_capacity, unique, sizeof(double) * FILTER_RECORD * AB_TILE_NODES)) &&
         (!body->f_bar || ab_memory_grow((void **)&body->volumetric, &body->volumetric_capacity, unique,
                                         sizeof(double) * VOLUMETRIC_RECORD * AB_TILE_NODES)) &&
+        (!body->f_bar || ab_memory_grow((void **)&body->slivers, &body->sliver_capacity, unique, sizeof *body->slivers)) &&
         mpm_light_reserve(body, unique) && mpm_damp_reserve(body, unique) &&
         ab_memory_grow((void **)&body->sums, &body->sums_capacity, unique, sizeof *body->sums) &&
         ab_memory_grow((void **)&body->patches, &body->patch_capacity, count, sizeof(double) * mpm_patch_doubles(body));

@@ -42,7 +42,7 @@ def cook(label, f_bar, settings, limit, within, between, sign="<=", cells=12):
 
 
 def tube(label, f_bar, settings, limit, pressure, sign="<="):
-    ran = run("tube_points", "tube", f_bar, settings)
+    ran = run("tube_points", "tube", f_bar, {"constants.n": 4, **settings})
     if ran:
         found = errors(ran[0])
         hold(f"tube {label}: u at a by the work there", found["work of the pressure is that of u at a"], sign, limit)
