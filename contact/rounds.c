@@ -21,7 +21,7 @@
 enum { MOST_ROUNDS = 400, PATIENCE = 6, MOST_PATIENCE = 60, PLAIN = 8 }; /* the first rounds are often enough */
 /* Change of an impulse against the largest one of the stage. The kinematic stage's impulses move nothing: they put right what the remap has made of the velocities
  * at contact points, and what they leave undone is a part of that. */
-static const double STANDSTILL[] = {[AB_STAGE_DYNAMIC] = 1e-13, [AB_STAGE_KINEMATIC] = 1e-6};
+static const double STANDSTILL[] = {[AB_STAGE_DYNAMIC] = 1e-13, [AB_STAGE_KINEMATIC] = 1e-9};
 static const double PROGRESS = 0.9; /* PATIENCE rounds must bring the change down to this part of what it was */
 /* Meshes that are held together share one motion along their seam, which takes many rounds to find, and what is left of the rest does work: MOST_PATIENCE then. (Points
  * that are held would stiffen the seam to one straight line if they were held exactly: several for each freedom of the grid.) */
