@@ -108,7 +108,7 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
         body->name, cells, speed_of(s, b), s->critical_dt);
 }
 
-enum { FEW = 4 }; /* points: a body of one cell with four */
+enum { FEW = 9 }; /* points: a body of one cell, with up to nine */
 
 /* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). */
 static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
