@@ -63,7 +63,8 @@ expect run 1 "turned inside out .*step [0-9]+, dt .*limit|makes energy" ../verif
 expect check 2 "contact: body 'stone' is a single material point" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
 expect check 0 "warning: contact: body 'stone' is 4 material points" small_bodies bodies.stone.fill.per_cell=4
-expect check 0 - small_bodies bodies.stone.fill.per_cell=9
+expect check 0 "warning: contact: body 'stone' is 9 material points" small_bodies bodies.stone.fill.per_cell=9
+expect check 0 - small_bodies bodies.stone.fill.per_cell=16
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=[0, -1]'
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].algorithm=point-to-segment'
 expect check 0 "warning: bodies.block: by its speed it leaves the grid through its right side at about [0-9.]+ s, before time.end, and would be [0-9.]+ m beyond" crossings 'grid.to=[20, 3]'
