@@ -1,4 +1,5 @@
 /* trace.c: what a contact finder sees of a material-point body at the nodes it shares with another: mass, gradients, and the points near each node. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"

@@ -118,7 +118,9 @@ output: {{fields: [velocity, mass]}}
             v = w @ (points[:, 2:3] * first["velocity"][:, :2])
             v = w.T @ np.where(mass[:, None] > 0, v / np.maximum(mass, 1e-300)[:, None], 0)
             where = [np.argsort(a["id"]) for a in (first, last)]
-            off = np.abs(v[where[0]] - last["velocity"][where[1]][:, :2]).max()
+            # at the edge nodes with little mass go by others (mpm/light_nodes.c), which the weights do not know
+            inside = (np.abs(points[where[0]][:, :2] - 0.5) < 0.5 - 3 * H).all(axis=1)
+            off = np.abs(v[where[0]] - last["velocity"][where[1]][:, :2])[inside].max()
             if off > 1e-8:
                 failures.append(f"{basis}, {rule}: the weights here are not the program's (a step of PIC differs by {off:.2g})")
 
