@@ -341,6 +341,15 @@ static bool is_mesh(const ab_domain *body) { return ab_domain_is_rigid(body) || 
 
 static bool is_of_points(const ab_domain *body) { return body->ops->node_tiles && !is_mesh(body); }
 
+/* A tie, or friction that is to hold fast. */
+static bool lets_nothing_slip(const ab_contact_spec *spec) {
+    static const double ROUGH = 10.0;
+    const ab_class *law = &spec->responder->class_;
+    for (uint32_t k = 0; k < law->nparam; ++k)
+        if (!strcmp(law->param[k].name, "friction") && law->param[k].type == AB_REAL && spec->responder_settings[k].real >= ROUGH) return true;
+    return (law->needs & AB_NEED_FIXED_PLACES) != 0;
+}
+
 /* True where a monitor shows areas of a contact, or pressures. */
 static bool shows_area(const ab_scene *scene, size_t contact) {
     for (size_t k = 0; k < scene->monitor_count; ++k) {
@@ -374,6 +383,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         pair->points.view.dimension = 2;
         pair->points.view.density = softer_density(scene, pair);
         pair->points.view.axisymmetric = scene->space == AB_SPACE_AXISYMMETRIC;
+        pair->points.view.holds = lets_nothing_slip(spec);
         pair->points.surfaces = (spec->finder->class_.needs & AB_NEED_SURFACE) != 0;
         pair->points.meshes = is_mesh(pair->a) && is_mesh(pair->b);
         pair->points.view.fixed_places = pair->points.meshes && (spec->responder->class_.needs & AB_NEED_FIXED_PLACES);

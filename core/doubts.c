@@ -150,11 +150,12 @@ static void doubt_rough(const ab_schedule *s, const ab_contact_spec *contact, ab
     const ab_value *touching = ab_doubt_setting(finder, contact->finder_settings, "touching"),
                    *passes = ab_doubt_setting(finder, contact->finder_settings, "passes"),
                    *friction = ab_doubt_setting(&contact->responder->class_, contact->responder_settings, "friction");
-    if (!touching || touching->integer || !passes || passes->integer || !friction || !(friction->real >= ROUGH)) return;
+    enum { CENTRE = 1 };
+    if (!touching || touching->integer != CENTRE || !passes || passes->integer || !friction || !(friction->real >= ROUGH)) return;
     ab_report_warning(
         report, contact->mark,
         "contact: friction %g is to hold '%s' and '%s' together, but where the centres of points touch (touching: centre) the two "
-        "passes ask for different motions, and it gives way by up to 3 %% of what it holds; use touching: outline, or passes: first",
+        "passes ask for different motions, and it gives way by up to 3 %% of what it holds; use touching: auto or outline, or passes: first",
         friction->real, s->scene->bodies[contact->body[0]].name, s->scene->bodies[contact->body[1]].name);
 }
 

@@ -1,4 +1,4 @@
-/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.5.
+/* abut_plugin.h: all that a plugin author needs. Plugin interface version 1.6.
  *
  * One source file makes one shared object. The object exports one symbol, and it is data:
  *
@@ -40,7 +40,7 @@ extern "C" {
 #endif
 
 #define AB_ABI_MAJOR 1u /* changes when an old plugin can no longer be understood */
-#define AB_ABI_MINOR 5u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
+#define AB_ABI_MINOR 6u /* grows when something is added; a plugin may be older than the host, never newer. 1: surfaces, springs;
                             2: density gradients, nearest faces, needs that hang on settings; 3: save and load;
                             4: boundaries; 5: points say whether they are about an axis */
 
@@ -309,6 +309,7 @@ typedef struct ab_points {
     int measure_area; /* since 1.2. 1: areas are read (a response asked for them, or a monitor shows them), and should add up to the length of the face
                          that the bodies share; 0: a finder may leave it at what it has at hand */
     int axisymmetric; /* since 1.5. 1: x is the radius (0, the axis, at the grid's corner), and in respond areas are those of rings: a length l at r stands for 2 pi r l */
+    int holds; /* since 1.6. 1: the response lets nothing slip: a tie (AB_NEED_FIXED_PLACES), or one whose setting `friction` is 10 or more */
 } ab_points;
 
 typedef struct ab_contact_ops {

@@ -21,7 +21,7 @@
 
 enum { CLOSED, NEWTON };
 enum { BOTH, FIRST, SECOND };
-enum { CENTRE, OUTLINE };
+enum { AUTO, CENTRE, OUTLINE };
 enum { MOST_SLOTS = 4 };
 static const double NEAR = 0.03; /* of a cell: given out although the bodies do not meet in this step */
 static const double BENT = 1e-4; /* bow of a face over its length: more is a round body, less what a flat one is bent by */
@@ -35,8 +35,8 @@ static const ab_param PARAMS[] = {
      AB_CHOICE, 0, CLOSED, 0, 0},
     {"touching", "1",
      "what of a material point is stopped and pushed: its centre, or the outline of its own body where it touches (both passes against "
-     "vertices, as of surface: points, always take the outline). Between two bodies of points",
-     "centre|outline", AB_CHOICE, 0, CENTRE, 0, 0},
+     "vertices, as of surface: points, always take the outline); auto: the outline where the response lets nothing slip, else the centre. Between two bodies of points",
+     "auto|centre|outline", AB_CHOICE, 0, AUTO, 0, 0},
 };
 
 typedef struct remembered { /* a contact point of the last step */
@@ -240,16 +240,17 @@ static void hold_place(const pass *p, size_t i, uint64_t key, hit *h) {
 
 static const double BY_THE_FACE = 0.25; /* of a cell: no point that stands on its outline is further from it */
 
-/* With touching: outline, the face of its own body that a material point touches with, half its size from its centre: that moves as the outline does there. With its centre's
+/* By its outline, the face of its own body that a material point touches with, half its size from its centre: that moves as the outline does there. With its centre's
  * velocity in place of it the two passes ask for two things, that the centres of a go with the faces of b and those of b with the faces of a: held both, as a tie has
- * to, nothing within half a point of the face can be strained, and contact points pull although a uniform pressure goes through. (But blocks at rest that quiver by flip rock
- * sooner: tests/stability/rest.yaml.) Where the other body's own pass is one of vertices, which touch with its outline (surface: points), so that only these points could
+ * to, nothing within half a point of the face can be strained, and contact points pull although a uniform pressure goes through. (But blocks that may slip creep at
+ * rest, off lines of the grid: docs/extremes_hold.md.) Where the other body's own pass is one of vertices, which touch with its outline (surface: points), so that only these points could
  * disagree, the centre is no choice: forces along were off by half, displacements by more. UINT32_MAX: its centre. */
 static uint32_t own_face_of(const pass *p, size_t i, uint64_t base, const double normal[2], double half, double *xi) {
     const ab_surface *s = p->points;
     if (s->point_vertex || !s->face_count || !(half > 0.0)) return UINT32_MAX;
     const int meets_vertices = p->self->passes == BOTH && p->faces->point_vertex;
-    if (p->self->touching == CENTRE && !meets_vertices) return UINT32_MAX;
+    const int outline = p->self->touching == OUTLINE || (p->self->touching == AUTO && p->out->holds);
+    if (!outline && !meets_vertices) return UINT32_MAX;
     const double x[2] = {s->point_position[i] - half * normal[0], s->point_position[s->point_ld + i] - half * normal[1]};
     uint32_t from = UINT32_MAX;
     for (uint32_t k = 0; k < MOST_SLOTS && from == UINT32_MAX; ++k) {
