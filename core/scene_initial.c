@@ -17,8 +17,9 @@ static double setting(const ab_material_spec *material, const char *name) {
 /* The coefficient where the scene gives none: by the friction of a soil that has yielded as it was laid down, else by elasticity between sides that hold. */
 static void choose_k0(ab_scene_reader *r, ab_mark mark, const char *where, ab_body_spec *body) {
     ab_initial_spec *initial = &body->initial;
+    if (body->material >= r->scene->material_count) return; /* it is not there, and the report says so */
     const ab_material_spec *material = r->scene->materials + body->material;
-    if (body->material >= r->scene->material_count || material->loaded == NULL || material->settings == NULL) return;
+    if (material->loaded == NULL || material->settings == NULL) return;
     const double friction = setting(material, "friction"), nu = setting(material, "nu"), M = setting(material, "M");
     if (friction > 0.0) {
         initial->k0 = 1.0 - sin(friction);
