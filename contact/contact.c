@@ -104,7 +104,7 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
     ab_points *p = &points->view;
     contact_side side[2];
     contact_sides(pair, side);
-    points->give = points->gives ? contact_give(stage) : 0.0;
+    points->give = points->gives ? contact_give(points, stage) : 0.0;
     if (!contact_points_prepare(points, side)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
     for (size_t c = 0; c < 2; ++c) {
         memset(p->impulse + c * p->ld, 0, p->count * sizeof(double));
@@ -393,6 +393,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         /* Not by surface points: they are no more than the freedoms under them. */
         pair->points.gives = pair->points.surfaces && !pair->points.spread.wanted && (is_of_points(pair->a) || is_of_points(pair->b)) &&
                              !(spec->responder->class_.needs & AB_NEED_GAP);
+        pair->points.unrest = 1.0;
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;
         pair->points.view.measure_area = (ab_response_needs(spec) & AB_NEED_AREA) || shows_area(scene, k);
         pair->points.states = HISTORY;

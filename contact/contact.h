@@ -52,6 +52,7 @@ typedef struct contact_points {
     double *applied;             /* impulse that the dofs have felt already; the loop applies the difference */
     double *change, *direction;  /* of the impulses: in the last round, and where the rounds are going */
     double *begun;               /* impulses that a stage began with, where points give way: those of the last step */
+    double unrest;               /* largest change of an impulse since the last step over the largest impulse; 1: not known */
     double give;                 /* inverse mass with which points give way to a change of their impulse, as a part of their own; 0: not */
     size_t stencil_a, stencil_b; /* capacity of the stencils */
     size_t states;               /* rows of history: the response's, then the loop's own HISTORY rows */
@@ -150,7 +151,7 @@ void contact_watch_depth(contact_pair *, ab_report *);
 
 /* rounds.c: impulses of all pairs' points in one stage; answered: the dynamic stage of this step is done. */
 ab_status contact_rounds(contact_pair *, size_t count, ab_stage, bool answered, ab_report *);
-double contact_give(ab_stage); /* contact_points.give of bodies of points by surfaces */
+double contact_give(const contact_points *, ab_stage); /* contact_points.give of bodies of points by surfaces */
 
 /* spread.c: room for forces, rows of ld (NULL: no memory); and their sharing, in place, with positive weights alone. False: no memory */
 double *contact_spread_room(contact_points *);

@@ -71,7 +71,8 @@ static bool keep_points(contact_points *points, ab_checkpoint *c) {
     return ab_keep_u64(c, "key", p->key, count) && keep_rows(c, "position", p->position, 2, p) && keep_rows(c, "normal", p->normal, 2, p) &&
            ab_keep_doubles(c, "gap", p->gap, count) && ab_keep_doubles(c, "area", p->area, count) &&
            keep_rows(c, "state", p->state1, points->states, p) && ab_keep_doubles(c, "cell", &p->cell, 1) &&
-           ab_keep_doubles(c, "modulus", &p->modulus, 1) && ab_keep_doubles(c, "speed", &p->speed, 1);
+           ab_keep_doubles(c, "modulus", &p->modulus, 1) && ab_keep_doubles(c, "speed", &p->speed, 1) &&
+           ab_keep_doubles(c, "unrest", &points->unrest, 1);
 }
 
 bool contact_keep_pair(contact_pair *pair, ab_checkpoint *c) {
