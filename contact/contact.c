@@ -98,14 +98,24 @@ static bool begin_with_last_forces(contact_pair *pair, const contact_side side[2
     return true;
 }
 
+/* The impulses of the last step, against which those of this one are held (unrest) where the rounds begin at nothing. */
+static void recall_begun(contact_points *points, double dt) {
+    ab_points *p = &points->view;
+    const double *force = p->state0 + (points->states - HISTORY + HISTORY_FORCE) * p->ld;
+    for (size_t i = 0; i < p->count; ++i) {
+        const double jn = dt * force[i], jt = dt * force[p->ld + i], nx = p->normal[i], ny = p->normal[p->ld + i];
+        points->begun[i] = jn * nx - jt * ny;
+        points->begun[p->ld + i] = jn * ny + jt * nx;
+    }
+}
+
 /* Before the first round of a stage: masses, fresh impulses, relative velocities at the start. */
 static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage, bool answered, ab_report *report) {
     contact_points *points = &pair->points;
     ab_points *p = &points->view;
     contact_side side[2];
     contact_sides(pair, side);
-    points->give = points->gives ? contact_give(points, stage) : 0.0;
-    if (!contact_points_prepare(points, side)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
+    if (!contact_points_prepare(points, side, stage)) return ab_report_failure(report, "no memory for %zu contact points", p->count);
     for (size_t c = 0; c < 2; ++c) {
         memset(p->impulse + c * p->ld, 0, p->count * sizeof(double));
         memset(points->applied + c * p->ld, 0, p->count * sizeof(double));
@@ -117,8 +127,11 @@ static ab_status prepare(contact_pair *pair, const ab_step *step, ab_stage stage
         points->relative_old[i] = v[0];
         points->relative_old[p->ld + i] = v[1];
     }
-    if (!points->surfaces) return AB_OK;
-    if (points->gives && stage == AB_STAGE_DYNAMIC && !contact_light_dofs(&points->light, side))
+    if (!points->surfaces && !(points->give > 0.0)) {
+        if (points->gives && stage == AB_STAGE_DYNAMIC) recall_begun(points, step->dt);
+        return AB_OK;
+    }
+    if (points->surfaces && points->gives && stage == AB_STAGE_DYNAMIC && !contact_light_dofs(&points->light, side))
         return ab_report_failure(report, "no memory for what %zu contact points push on", p->count);
     const bool done = stage == AB_STAGE_DYNAMIC ? begin_with_last_forces(pair, side, step->dt, HISTORY_FORCE, NULL)
                                                 : begin_with_last_forces(pair, side, step->dt, HISTORY_STRAIN,
@@ -390,8 +403,8 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
         for (int side = 1; side >= 0; --side)
             if (pair->points.surfaces && scene->bodies[spec->body[side]].surface_points > 0.0)
                 pair->points.spread = (contact_spread){.wanted = true, .side = side};
-        /* Not by surface points: they are no more than the freedoms under them. */
-        pair->points.gives = pair->points.surfaces && !pair->points.spread.wanted && (is_of_points(pair->a) || is_of_points(pair->b)) &&
+        /* Where forces may be undetermined: rounds.c. Not by surface points: they are no more than the freedoms under them. */
+        pair->points.gives = !pair->points.spread.wanted && (is_of_points(pair->a) || is_of_points(pair->b)) &&
                              !(spec->responder->class_.needs & AB_NEED_GAP);
         pair->points.unrest = 1.0;
         pair->points.distances = (spec->responder->class_.needs & AB_NEED_DISTANCE) != 0;

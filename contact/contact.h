@@ -60,7 +60,7 @@ typedef struct contact_points {
     bool held;         /* of some point: normal and tangential answers act on each other (one direction of a dof is held, a body turns) */
     bool surfaces;     /* points come from surfaces, not from shared nodes */
     bool meshes;       /* both bodies are meshes or rigid */
-    bool gives;        /* bodies of points by surfaces: see rounds.c */
+    bool gives;        /* one body is of points, and no response of springs: points may give way, see rounds.c */
     bool distances;    /* the response needs them */
     uint64_t *old_key; /* of the last step, ascending, with their states: history */
     double *old_state;
@@ -180,7 +180,7 @@ bool contact_keep_spread(contact_points *, struct ab_checkpoint *);
 /* points.c */
 bool contact_points_reserve(contact_points *, size_t points, size_t stencil); /* false: no memory */
 void contact_points_destroy(contact_points *);
-bool contact_points_prepare(contact_points *, const contact_side side[2]); /* effective masses, history; false: no memory */
+bool contact_points_prepare(contact_points *, const contact_side side[2], ab_stage); /* effective masses, give, history; false: no memory */
 bool contact_points_remember(contact_points *);                            /* false: no memory */
 
 #endif

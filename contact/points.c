@@ -175,9 +175,15 @@ static double share_of_mass(const contact_side side[2], size_t i, const double n
     return 1.0 / (1.0 + ab_smaller(1.0, fabs(coupling) / sqrt(in * it)));
 }
 
-bool contact_points_prepare(contact_points *points, const contact_side side[2]) {
+bool contact_points_prepare(contact_points *points, const contact_side side[2], ab_stage stage) {
     ab_points *v = &points->view;
     double *mn = (double *)(uintptr_t)v->normal_mass, *mt = (double *)(uintptr_t)v->tangential_mass;
+    const int shared_a = shares_dofs(points, v->a_start, v->a_dof, v->count),
+              shared_b = shares_dofs(points, v->b_start, v->b_dof, v->count);
+    if (shared_a < 0 || shared_b < 0) return false;
+    points->shared = shared_a || shared_b;
+    const bool dependent = points->surfaces || (shared_a && shared_b && stage == AB_STAGE_DYNAMIC);
+    points->give = points->gives && dependent ? contact_give(points, stage) : 0.0;
     bool held = false;
     for (size_t i = 0; i < v->count; ++i) {
         if (!points->surfaces) fit_normal_to_sides(v, i, side);
@@ -187,10 +193,6 @@ bool contact_points_prepare(contact_points *points, const contact_side side[2]) 
         mn[i] = in > 0.0 ? share / in : 0.0;
         mt[i] = it > 0.0 ? share / it : 0.0;
     }
-    const int shared_a = shares_dofs(points, v->a_start, v->a_dof, v->count),
-              shared_b = shares_dofs(points, v->b_start, v->b_dof, v->count);
-    if (shared_a < 0 || shared_b < 0) return false;
-    points->shared = shared_a || shared_b;
     points->held = held;
     return recall(points);
 }

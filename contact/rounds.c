@@ -13,6 +13,10 @@
  * of stiffness m/(give dt^2) under each point, integrated implicitly (regularised constraints: Lacoursiere 2007). With some six points on a freedom the bodies overlap by about
  * give/6 (c dt/h)^2 of what the cell beside the face is compressed by.
  *
+ * On shared nodes the same is so where nodes of both bodies go by others (light nodes; elements larger than cells). The three nodes of a column which two faces cross
+ * have two freedoms: v1 + v3 = 2 v2 relative to each other. Any share of the load between them holds the bodies apart, but each slips at a limit of its own, and which share
+ * a few rounds found turned with the order of the nodes. These give way, too, in the dynamic stage; the kinematic one asks for velocities alone, which are one and the same.
+ *
  * Forces that are next to undetermined then go to rest as slowly as the points give way: blocks that touch by their outlines crept for 1e6 steps. So the less impulses change
  * from step to step the less points give way: what they begin with is nearly right, and the rounds need not find the rest from nothing. */
 #include <math.h>
@@ -32,7 +36,7 @@ static const double LITTLE_PROGRESS = 0.99;
 
 /* STANDSTILL of points that give way; and how far they do. Less needs more rounds, more makes bodies overlap by more. The kinematic stage moves nothing and may give more, but
  * not much: with ten times as much as in the dynamic stage it lags behind so far that blocks at rest begin to rock by themselves. */
-static const double GIVEN = 1e-9;
+static const double GIVEN[] = {1e-12, 1e-9}; /* at shared nodes; on surfaces */
 static const double GIVE[] = {[AB_STAGE_DYNAMIC] = 0.1, [AB_STAGE_KINEMATIC] = 0.2};
 
 /* They give way in full where an impulse changes by 1/CALM of the largest one in a step, and by LEAST_GIVE of that at rest. */
@@ -160,15 +164,18 @@ static void go_on(contact_pair *pair, const contact_side side[2], double part) {
 
 ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool answered, ab_report *report) {
     size_t active = 0;
-    bool again = false, holds = false, give = true;
+    bool again = false, holds = false, give = true, gives = false, surfaces = false; /* all give way; some do; some are of surfaces */
     for (size_t k = 0; k < count; ++k) {
         if (!pairs[k].points.view.count) continue;
         ++active;
         give = give && pairs[k].points.give > 0.0;
+        gives = gives || pairs[k].points.give > 0.0;
+        surfaces = surfaces || pairs[k].points.surfaces;
         again = again || pairs[k].points.shared || pairs[k].points.held;
         holds = holds || (stage == AB_STAGE_DYNAMIC && pairs[k].points.view.fixed_places);
     }
     again = again || active > 1;
+    const double enough = give ? GIVEN[surfaces] : STANDSTILL[stage];
     double square = 0.0, least = INFINITY;
     int since = 0; /* rounds since the change was that small */
     for (int round = 0; active && round < (again ? MOST_ROUNDS : 1); ++round) {
@@ -184,8 +191,8 @@ ab_status contact_rounds(contact_pair *pairs, size_t count, ab_stage stage, bool
         }
         const double change = sqrt(so_far.change2), largest = sqrt(so_far.largest2);
         holds = holds || (stage == AB_STAGE_DYNAMIC && so_far.pulls);
-        if (change < (holds || give ? LITTLE_PROGRESS : PROGRESS) * least) least = change, since = 0;
-        if (!again || change <= (give ? GIVEN : STANDSTILL[stage]) * largest || ++since > (holds || give ? MOST_PATIENCE : PATIENCE))
+        if (change < (holds || gives ? LITTLE_PROGRESS : PROGRESS) * least) least = change, since = 0;
+        if (!again || change <= enough * largest || ++since > (holds || gives ? MOST_PATIENCE : PATIENCE))
             break;
         const double part = round > PLAIN && so_far.square < square ? so_far.square / square : 0.0;
         square = so_far.square;

@@ -47,7 +47,7 @@ static void step(bench *b, const int (*node)[2], const double *depth, size_t cou
     }
     b->side[0] = (contact_side){.points = v, .start = v->a_start, .sign = 1},
     b->side[1] = (contact_side){.points = v, .start = v->b_start, .sign = -1};
-    assert_true(contact_points_prepare(&b->points, b->side));
+    assert_true(contact_points_prepare(&b->points, b->side, AB_STAGE_DYNAMIC));
     memcpy(v->state1, v->state0, (STATES + HISTORY) * v->ld * sizeof(double));
 }
 
