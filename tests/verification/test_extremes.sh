@@ -52,6 +52,15 @@ must "a formula with a condition" says 0 "^. k . 2, the end" "$build/abut" extre
 must "right up to what is not tried" says 2 "right_to: 1.4 is not between from, 0.5, and to, 1.2" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.4 -o bar -q
 must "what must be right and is not, with --strict" says 3 "dt does not hold: unstable at" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.1 --strict -o bar -q
 must "pieces that do not go one way" says 0 "v0 does not go one way: right 1e-4, wrong 0, right 2e-4" "$build/abut" extremes bar.yaml --vary constants.v0=1e-4,0,2e-4 --set 'expect=[{name: end, monitor: end, reference: 1e-4/w, norm: peak, scale: 1/w, tolerance: 1e-3}]' --set 'expect[0].reference="max(v0, 1e-4)/w"' --set 'expect[0].tolerance=1e-5' -o pieces -q
+one=(--vary 'time.end=12.3*pi/w' --set constants.part=0.9 -q) # ends in the middle of a vibration, where a step as long as this has energy made
+"$build/abut" extremes bar.yaml "${one[@]}" -o made >said
+made=$(python3 -c "import json; print(json.load(open('made/extremes.json'))['quantities'][0]['runs'][0]['remainder'])")
+must "the run has made energy" python3 -c "assert 0.01 < $made < 0.1"
+must "energy that is over what may be made" says 0 "time.end . not even 12.3.pi/w . not even 12.3.pi/w . .* . no . energy made: 0.0[0-9]+ of what moved" "$build/abut" extremes bar.yaml "${one[@]}" --set "extremes.energy=0.99*$made" -o made
+must "energy that is below it" says 0 "time.end . 12.3.pi/w, the end . 12.3.pi/w, the end . nowhere . yes" "$build/abut" extremes bar.yaml "${one[@]}" --set "extremes.energy=1.01*$made" -o made
+twins='set: constants.v0, values: [1e-4, 1.001e-4], same:' # the end of the bar goes by 1.0018 of v0/w, so the answers are 1.0018e-3 of a reference that stays apart
+must "answers that are the same, and not quite" says 0 "^. wide . 1.001e-4, the end .* yes" "$build/abut" extremes bar.yaml --set "extremes.vary=[{name: wide, $twins 1.01e-3}, {name: narrow, $twins 0.99e-3}]" --set 'expect[0].reference=1e-4/w' -o twins -q
+must "are told apart" grep -Eq "^. narrow . 1e-4, not 1.001e-4 . 1.001e-4, the end . nowhere . no . .*they differ by 0.001, 0.00099 allowed" said
 must "a map" says 0 "0.1  # # o|# right" "$build/abut" extremes bar.yaml --vary constants.part=0.5,0.9,1.1 --vary constants.nu=0,0.1,0.5 --map part,nu -o map -q
 must "its picture" python3 - <<'PYTHON'
 import json, xml.dom.minidom

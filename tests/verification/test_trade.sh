@@ -30,6 +30,25 @@ assert [float(row["error"]) for row in rows] == [r["error"] for r in runs]
 picture = xml.dom.minidom.parse("bar/trade.svg")
 assert len(picture.getElementsByTagName("circle")) == 9
 PYTHON
+# The same runs again, with fewer seconds than the most accurate of them takes: another one is named.
+seconds=$(python3 - <<'PYTHON'
+import json
+runs = json.load(open("bar/trade.json"))["runs"]
+least, best = min(r["cpu_seconds"] for r in runs), min(runs, key=lambda r: r["error"])
+assert least < best["cpu_seconds"]
+print(repr(0.5 * (max(r["cpu_seconds"] for r in runs if r["cpu_seconds"] < best["cpu_seconds"]) + best["cpu_seconds"])))
+PYTHON
+)
+must "fewer seconds" says 0 "the most accurate within [0-9.]+ s is constants.cells=" "$build/abut" trade "$bar" --vary constants.cells=12,25,50 --vary "$basis" -o bar --seconds "$seconds"
+must "name another run as the most accurate" python3 - "$seconds" <<'PYTHON'
+import json, sys
+trade = json.load(open("bar/trade.json"))
+runs = trade["runs"]
+assert trade["seconds"] == float(sys.argv[1])
+assert trade["most_accurate"] == min((r for r in runs if r["cpu_seconds"] <= trade["seconds"]), key=lambda r: r["error"])["settings"]
+assert trade["most_accurate"] != min(runs, key=lambda r: r["error"])["settings"]
+PYTHON
+must "too few seconds" says 0 "no run with a known error takes 0.0001 s or less" "$build/abut" trade "$bar" --vary constants.cells=12,25,50 --vary "$basis" -o bar --seconds 1e-4
 must "the scene it writes runs and is as good" "$build/abut" run best.yaml --quiet -o best
 must "errors of that scene" python3 -c "
 import json
@@ -74,10 +93,21 @@ trade:
   vary: [{set: constants.cells, values: [10, 20, 40]}]
 SCENE
 must "a scene without expects" says 0 "limit that constants.cells tends to" "$build/abut" trade plain.yaml -o plain
-must "its errors fall by the order of the method" python3 -c "
-import json, math
-e = [r['errors']['tip'] for r in json.load(open('plain/trade.json'))['runs']]
-assert 2 < e[0] / e[1] < 8 and 2 < e[1] / e[2] < 8, e"
+must "its errors are those against Richardson's limit, of the tip next to the exact answer" python3 - <<'PYTHON'
+import csv, json, math
+runs = json.load(open("plain/trade.json"))["runs"]
+answer = 1e-4 / (10 * math.pi / 50) * math.sin(0.4 * math.pi)  # of the tip: the first mode of a bar, c = 10
+for name in ("tip", "v"):
+    histories = [[float(row[name]) for row in csv.DictReader(open(r["folder"] + "/history.csv"))] for r in runs]
+    a, b, c = (h[-1] for h in histories)
+    limit = c + (c - b) / ((a - b) / (b - c) - 1)
+    peak = max(abs(v) for v in histories[2])
+    for r, h in zip(runs, histories):
+        assert abs(r["errors"][name] - abs(h[-1] - limit) / peak) <= 1e-9 * r["errors"][name], (name, r["errors"][name])
+    assert name == "v" or abs(limit - answer) < 0.2 * abs(c - answer), (limit, c, answer)
+e = [r["errors"]["tip"] for r in runs]
+assert 2 < e[0] / e[1] < 8 and 2 < e[1] / e[2] < 8, e
+PYTHON
 must "monitors that count are named" says 0 "the largest of 'v'$" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[v]'
 must "a monitor that is not there" says 2 "there is no monitor 'vv'; known: tip, v" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[vv]'
 must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" trade "$bar" --vary bodies.bar.transfer=flip,tpic --vary bodies.bar.update=musl,usl --set constants.cells=12 -o refused
