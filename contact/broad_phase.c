@@ -13,14 +13,6 @@ static const double AHEAD = 0.25;  /* of a typical face: the same, beyond what t
 /* Cells that a body may leap in a step and still be seen in time: regions cost its square times the faces. */
 static const double LEAST_LEAP = 4.0, MOST_LEAP = 64.0, LEAP_COST = 2e6;
 
-ab_status contact_broad_create(const ab_scene *scene, contact_pair *pair, ab_report *report) {
-    pair->broad = calloc(1, sizeof *pair->broad);
-    if (!pair->broad)
-        return ab_report_failure(report, "no memory for the contact of '%s' and '%s'", pair->a->spec->name, pair->b->spec->name);
-    pair->broad->grid_cell = scene->grid_cell;
-    return AB_OK;
-}
-
 void contact_broad_destroy(contact_broad *broad) {
     if (!broad) return;
     for (int side = 0; side < 2; ++side) contact_reach_destroy(broad->reach + side);
@@ -65,6 +57,31 @@ static bool measure(contact_broad *broad, const ab_surface surface[2]) {
     for (int side = 0; side < 2; ++side)
         broad->needed[side] = broad->length[side] = ab_larger(ab_smaller(broad->cell, mean[side]), FINEST * all);
     return true;
+}
+
+/* Both bodies' faces; the rest of a surface is left empty. */
+static ab_status ask_for_faces(const contact_pair *pair, ab_surface surface[2], ab_report *report) {
+    ab_domain *const body[2] = {pair->a, pair->b};
+    for (int side = 0; side < 2; ++side) {
+        surface[side] = (ab_surface){.struct_size = sizeof *surface, .dimension = 2};
+        if (body[side]->ops->faces) AB_TRY(body[side]->ops->faces(body[side], surface + side, report));
+    }
+    return AB_OK;
+}
+
+static ab_status no_length(const contact_pair *pair, ab_report *report) {
+    return ab_report_failure(report, "contact of '%s' and '%s': no face of either body has a length", pair->a->spec->name, pair->b->spec->name);
+}
+
+ab_status contact_broad_create(const ab_scene *scene, contact_pair *pair, ab_report *report) {
+    pair->broad = calloc(1, sizeof *pair->broad);
+    if (!pair->broad)
+        return ab_report_failure(report, "no memory for the contact of '%s' and '%s'", pair->a->spec->name, pair->b->spec->name);
+    pair->broad->grid_cell = scene->grid_cell;
+    if (scene->grid_cell > 0.0) return AB_OK; /* points have no faces before the first step */
+    ab_surface surface[2];
+    AB_TRY(ask_for_faces(pair, surface, report));
+    return measure(pair->broad, surface) ? AB_OK : no_length(pair, report);
 }
 
 static void widen(contact_box *box, const double x[2]) {
@@ -154,7 +171,7 @@ static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surfac
         }
         const contact_box velocity_a = velocities(pair->a, surface), velocity_b = velocities(pair->b, surface + 1);
         const bool any = surface[0].point_count || surface[1].point_count;
-        broad->speed = any ? largest_difference(&velocity_a, &velocity_b) : 0.0;
+        broad->speed = any ? largest_difference(&velocity_a, &velocity_b) : pair->approach.speed;
         bool enough = true;
         for (int side = 0; side < 2; ++side) {
             const double most = ab_larger(LEAST_LEAP, ab_smaller(MOST_LEAP, sqrt(LEAP_COST / (1.0 + (double)surface[side].face_count))));
@@ -170,14 +187,11 @@ static ab_status ask_for_points(contact_pair *pair, double dt, ab_surface surfac
 
 ab_status contact_surfaces(contact_pair *pair, double dt, ab_surface *a, ab_surface *b, ab_report *report) {
     contact_broad *broad = pair->broad;
-    ab_surface surface[2] = {{.struct_size = sizeof *a, .dimension = 2}, {.struct_size = sizeof *b, .dimension = 2}};
+    ab_surface surface[2];
     ab_domain *const body[2] = {pair->a, pair->b};
-    for (int side = 0; side < 2; ++side)
-        if (body[side]->ops->faces) AB_TRY(body[side]->ops->faces(body[side], surface + side, report));
+    AB_TRY(ask_for_faces(pair, surface, report));
     broad->reach[0].visits = broad->reach[1].visits = 0;
-    if (broad->cell == 0.0 && !measure(broad, surface))
-        return ab_report_failure(report, "contact of '%s' and '%s': no face of either body has a length", pair->a->spec->name,
-                                 pair->b->spec->name);
+    if (broad->cell == 0.0 && !measure(broad, surface)) return no_length(pair, report);
     double distance[2];
     AB_TRY(ask_for_points(pair, dt, surface, distance, report));
     for (int side = 0; side < 2; ++side)

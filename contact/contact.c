@@ -203,12 +203,22 @@ static void note_springs(contact_all *all) {
 }
 
 static double critical_dt(const ab_interaction *face, const char **limit) {
-    contact_all *all = (contact_all *)(uintptr_t)face; /* only the words are written */
-    if (all->critical_dt < INFINITY)
+    contact_all *all = (contact_all *)(uintptr_t)face; /* only the words, and how bodies approach, are written */
+    const contact_pair *fastest = NULL;
+    double least = all->critical_dt;
+    for (size_t k = 0; k < all->count; ++k) {
+        contact_pair *pair = all->pairs + k;
+        pair->approach = contact_approach_of(pair);
+        if (pair->approach.speed * least > pair->approach.way) least = pair->approach.way / pair->approach.speed, fastest = pair;
+    }
+    if (fastest)
+        snprintf(all->limit, sizeof all->limit, "'%.80s' and '%.80s' move at %.3g m/s against each other, in cells of %.3g m", fastest->a->spec->name,
+                 fastest->b->spec->name, fastest->approach.speed, fastest->cell);
+    else if (all->critical_dt < INFINITY)
         snprintf(all->limit, sizeof all->limit, "spring of contact between '%.80s' and '%.80s', %.3g N/m on %.3g kg",
                  all->limit_pair->a->spec->name, all->limit_pair->b->spec->name, all->limit_stiffness, all->limit_mass);
     *limit = all->limit;
-    return all->critical_dt;
+    return least;
 }
 
 static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage, ab_report *report) {
@@ -218,7 +228,10 @@ static ab_status solve(ab_interaction *face, const ab_step *step, ab_stage stage
         for (size_t k = 0; k < all->count; ++k) {
             if (all->found_step >= 0 && !contact_points_remember(&all->pairs[k].points))
                 return ab_report_failure(report, "no memory for what %zu contact points remember", all->pairs[k].points.view.count);
-            AB_TRY(contact_find(all->pairs + k, step, report));
+            contact_pair *pair = all->pairs + k;
+            if (ab_domain_is_rigid(pair->a) || ab_domain_is_rigid(pair->b)) pair->approach = contact_approach_of(pair); /* given motions may leap */
+            AB_TRY(contact_stop_passing(all->scene, pair, &pair->approach, step, report));
+            AB_TRY(contact_find(pair, step, report));
             if (step->number == 0) contact_warn_of_overlap(all->scene, all->pairs + k, report);
         }
         all->found_step = step->number;
@@ -416,6 +429,7 @@ ab_status contact_create(const ab_scene *scene, ab_domain **domains, ab_interact
                     pair->points.sums.rows |= (uint64_t)1 << (pair->points.states - HISTORY);
         status = contact_can_find(pair, report);
         if (status == AB_OK && pair->points.surfaces) status = contact_broad_create(scene, pair, report);
+        if (status == AB_OK) pair->cell = pair->broad && !(scene->grid_cell > 0.0) ? contact_broad_cell(pair->broad) : scene->grid_cell;
         if (status == AB_OK) status = create_half(pair, spec->finder, spec->finder_settings, &pair->finder_service, &pair->finder, report);
         if (status == AB_OK)
             status = create_half(pair, spec->responder, spec->responder_settings, &pair->responder_service, &pair->responder, report);

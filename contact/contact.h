@@ -77,6 +77,11 @@ typedef struct contact_points {
 
 typedef struct contact_broad contact_broad; /* broad_phase.c */
 
+/* approach.c: how fast two bodies may come at each other, m/s, and what they may close in a step, m: half of what lies between them and a cell */
+typedef struct contact_approach {
+    double speed, way;
+} contact_approach;
+
 typedef struct contact_pair {
     const ab_contact_spec *spec;
     ab_domain *a, *b;
@@ -91,6 +96,8 @@ typedef struct contact_pair {
     struct contact_faces *faces; /* NULL unless the finder needs the nearest faces of nodes */
     contact_points points;
     size_t failures; /* of the finder, so far */
+    double cell;     /* m: the grid's, or without one the mean length of a face of the finer body */
+    contact_approach approach; /* as the step was chosen */
 } contact_pair;
 
 /* sides.c: one side of a pair's contact points, on the dofs of its body */
@@ -128,13 +135,18 @@ ab_status contact_broad_create(const ab_scene *, contact_pair *, ab_report *);
 void contact_broad_destroy(contact_broad *);
 /* Surfaces of both bodies, each point with the other body's faces near it. They stay the domains' and the broad phase's, until the next call. */
 ab_status contact_surfaces(contact_pair *, double dt, ab_surface *a, ab_surface *b, ab_report *);
-double contact_broad_cell(const contact_broad *); /* m; the grid's, or without one the mean length of a face. Known after the first call */
+double contact_broad_cell(const contact_broad *); /* m; the grid's, or without one the mean length of a face of the finer body */
 double contact_broad_face(const contact_broad *); /* m, typical, the longer one of the two bodies. Known after the first call */
 void contact_broad_note_depth(contact_broad *, double depth); /* m, by which the bodies overlap now: the next call looks that much deeper */
 bool contact_broad_tell(contact_broad *);           /* true once: the user has not been told yet that the bodies are deep in each other */
 double contact_broad_speed(const contact_broad *);  /* m/s, largest of a place on one surface against one on the other */
 size_t contact_broad_visits(const contact_broad *); /* pairs of a point and a face that were looked at in the last call */
 size_t contact_broad_builds(const contact_broad *); /* how often regions and buckets were made so far */
+
+/* approach.c */
+contact_approach contact_approach_of(const contact_pair *);
+/* The step is one that may carry one body through the other: stops. */
+ab_status contact_stop_passing(const ab_scene *, const contact_pair *, const contact_approach *, const ab_step *, ab_report *);
 
 /* find.c */
 ab_status contact_can_find(const contact_pair *, ab_report *); /* the bodies have what the finder needs */

@@ -145,6 +145,10 @@ typedef struct ab_plan_body {    /* what a body will cost; filled by plan() */
     char passes[512]; /* passes per step, separated by ", " */
 } ab_plan_body;
 
+typedef struct ab_bounds { /* of a body, now: where it is, m from the grid's corner, and least and most of its velocities, m/s */
+    double low[2], high[2], least_velocity[2], most_velocity[2];
+} ab_bounds;
+
 typedef struct ab_domain_ops {
     const char *method;
     void (*destroy)(ab_domain *);
@@ -168,6 +172,7 @@ typedef struct ab_domain_ops {
      * faces; surface_points() the points in the region, with stencils, without near lists. Either NULL: the body has none. */
     ab_status (*faces)(ab_domain *, ab_surface *, ab_report *);
     ab_status (*surface_points)(ab_domain *, const ab_region *, ab_surface *, ab_report *);
+    void (*bounds)(const ab_domain *, ab_bounds *); /* between two steps; NULL: a body whose own limit keeps it from passing a cell in a step */
     double (*modulus)(const ab_domain *); /* Pa, P-wave modulus; INFINITY: rigid */
     /* Force, N, and moment about the origin of the scene, N m in [2], that held and prescribed nodes, or the motion prescribed to a rigid body, put on the
      * body in the last step; 0 before the first. NULL: the body has none. */

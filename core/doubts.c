@@ -8,6 +8,7 @@
 
 #include "core/doubts_room.h"
 #include "core/doubts_springs.h"
+#include "core/doubts_weight.h"
 
 static const double HOPELESS =
     3; /* of the limit: limits are of the worst places of points, others bear up to 2.2 of it (tests/stability/dt.yaml) */
@@ -195,6 +196,7 @@ ab_status ab_doubts(const ab_schedule *s, ab_report *report) {
         AB_TRY(check_first_step(s, b, report));
         AB_TRY(doubt_flight(s, b, report));
         AB_TRY(doubt_crossing(s, b, report));
+        AB_TRY(ab_doubt_weight(s, b, report));
         doubt_poisson(s, b, report);
         if (scene->stage_count == 0) doubt_spline(body, scene->time_cfl, scene->mark_time, "time.cfl", report);
         for (size_t k = 0; k < scene->stage_count; ++k) {

@@ -20,7 +20,8 @@ struct ab_interaction { /* first member of the maker's own struct */
     const ab_contact_totals *(*totals)(const ab_interaction *);
     /* Friction and contact dissipation of a body so far, J. */
     void (*book)(const ab_interaction *, size_t body, double *friction, double *contact);
-    /* dt, s, at which a spring of contact is neutrally stable (responses that act as one); INFINITY without. As of the last step. */
+    /* dt, s, at which a spring of contact is neutrally stable (responses that act as one), as of the last step; or by which bodies without a limit of their own would pass
+     * each other unseen; INFINITY without. */
     double (*critical_dt)(const ab_interaction *, const char **limit);
     /* As of a domain: core/checkpoint.h. */
     void (*keep)(ab_interaction *, struct ab_checkpoint *);

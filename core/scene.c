@@ -22,6 +22,7 @@ static void take_top(ab_scene_reader *r, const ab_node *root) {
     ab_read_word(&r->base, &key[TOP_SPACE], v[TOP_SPACE], "", &space);
     if (space != NULL && strcmp(space, "axisymmetric") == 0) scene->space = AB_SPACE_AXISYMMETRIC;
     ab_read_vector(&r->base, &key[TOP_GRAVITY], v[TOP_GRAVITY], "", scene->gravity);
+    if (v[TOP_GRAVITY] != NULL) scene->mark_gravity = v[TOP_GRAVITY]->mark;
     ab_scene_take_damping(r, v[TOP_DAMPING]);
     ab_scene_take_watchdog(r, v[TOP_WATCHDOG]);
     ab_scene_take_time(r, v[TOP_TIME]);

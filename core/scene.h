@@ -292,7 +292,7 @@ typedef struct ab_scene {
     double watch_energy;                 /* as a part of what was put into it */
     double damping_local, damping_until; /* until: s, INFINITY when always */
     double time_end, time_dt, time_cfl;  /* dt 0: by cfl; cfl 0: by dt */
-    ab_mark mark_time, mark_grid;
+    ab_mark mark_time, mark_grid, mark_gravity;
     ab_stage_spec *stages; /* in their order; time_end, time_dt and time_cfl are then of the last, and of the first that is not made */
     size_t stage_count;    /* 0: all of the run is one */
     double grid_from[2], grid_to[2], grid_cell; /* cell 0: no grid (finite elements and rigid bodies alone) */

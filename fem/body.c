@@ -81,6 +81,24 @@ static ab_status trial(ab_domain *domain, const ab_step *step, ab_report *report
     return AB_OK;
 }
 
+/* Names the first node whose velocity is no number any more, or else the fastest one, where it was at the start of the step. */
+static ab_status blown_up(const fem_body *body, const ab_step *step, ab_report *report) {
+    size_t worst = 0;
+    double most = -1.0;
+    for (size_t i = 0; i < body->nodes && most < INFINITY; ++i) {
+        const double *v = body->velocity + 2 * i, size = hypot(v[0], v[1]), seen = isfinite(size) ? size : INFINITY;
+        if (seen > most) most = seen, worst = i;
+    }
+    const double *v = body->velocity + 2 * worst, *x = body->x_start + 2 * worst;
+    return ab_report_failure(report,
+                             "body '%s': the kinetic energy is no finite number any more: node %zu at (%.6g, %.6g) m has the velocity (%.4g, %.4g) m/s at t = %.9g s (step %ld, "
+                             "dt %.4g s, limit %.4g s); %s",
+                             body->domain.spec->name, worst, x[0] + body->origin[0], x[1] + body->origin[1], v[0], v[1], step->time + step->dt, step->number, step->dt,
+                             body->slowest,
+                             step->dt > body->slowest ? "dt is above the limit: use a smaller one, or cfl"
+                                                      : "look at what drives it: gravity, loads, given motions and their units; else use a smaller dt or a finer mesh there");
+}
+
 static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *report) {
     fem_body *body = (fem_body *)domain;
     body->open = false;
@@ -89,12 +107,7 @@ static ab_status finish(ab_domain *domain, const ab_step *step, ab_report *repor
     fem_nodes_finish(body, step);
     fem_loads_work(body, step);
     fem_body_force_work(body, step);
-    if (!isfinite(body->energy.kinetic))
-        return ab_report_failure(report,
-                                 "body '%s': the kinetic energy is no finite number any more at t = %.9g s (step %ld): the run has blown "
-                                 "up; use a smaller dt (the limit is %.4g s)",
-                                 domain->spec->name, step->time + step->dt, step->number, body->slowest);
-    return AB_OK;
+    return isfinite(body->energy.kinetic) ? AB_OK : blown_up(body, step, report);
 }
 
 static ab_status complain(const fem_body *body, fem_trouble trouble, size_t element, const ab_step *step, ab_report *report) {
@@ -213,6 +226,7 @@ static const ab_domain_ops OPS = {.method = "finite-elements",
                                   .node_tiles = node_tiles,
                                   .trace = trace,
                                   .dofs = dofs,
+                                  .bounds = fem_bounds,
                                   .faces = fem_surface_faces,
                                   .surface_points = fem_surface_points,
                                   .modulus = modulus,

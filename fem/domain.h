@@ -245,6 +245,9 @@ void fem_cells(const ab_domain *, ab_cells *);
 /* surface.c */
 ab_status fem_outer_create(fem_body *, fem_faces *, ab_report *); /* takes the faces over */
 void fem_outer_destroy(fem_body *);
+/* bounds.c */
+void fem_bounds(const ab_domain *, ab_bounds *);
+
 ab_status fem_surface_faces(ab_domain *, ab_surface *, ab_report *);
 ab_status fem_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_report *);
 

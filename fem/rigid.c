@@ -78,7 +78,7 @@ static void plan(const ab_domain *domain, ab_plan_body *p) {
 
 #define SAME_FOR_BOTH                                                                                                                      \
     .method = "rigid", .destroy = destroy, .critical_dt = critical_dt, .begin = rigid_begin, .trial = rigid_trial, .finish = rigid_finish, \
-    .ledger = ledger, .node_tiles = rigid_node_tiles, .trace = rigid_trace, .dofs = dofs, .faces = rigid_faces,                            \
+    .ledger = ledger, .node_tiles = rigid_node_tiles, .trace = rigid_trace, .dofs = dofs, .faces = rigid_faces, .bounds = rigid_bounds,    \
     .surface_points = rigid_surface_points, .modulus = modulus, .count = rigid_count, .fields = rigid_fields, .read = rigid_read,          \
     .plan = plan, .keep = rigid_keep, .rest = rigid_rest, .datum = rigid_datum, .balance = rigid_balance
 static const ab_domain_ops OPS_FREE = {SAME_FOR_BOTH};

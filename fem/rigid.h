@@ -120,6 +120,9 @@ ab_status rigid_surface_points(ab_domain *, const ab_region *, ab_surface *, ab_
 ab_status rigid_trace(ab_domain *, const uint32_t *nodes, size_t count, uint32_t needs, ab_trace *, ab_report *);
 void rigid_node_tiles(const ab_domain *, ab_node_tiles *);
 
+/* bounds.c */
+void rigid_bounds(const ab_domain *, ab_bounds *);
+
 /* keep.c: checkpoints */
 void rigid_keep(ab_domain *, struct ab_checkpoint *);
 

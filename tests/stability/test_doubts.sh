@@ -128,5 +128,23 @@ bodies:
 SCENE
 here=. expect run 1 "body 'block': element [0-9]+ near .* m is nearly turned inside out \(watchdog: \{stop: false\} lets it go on\) at t = 0.99.*step 99[0-9], dt .*limit .*use a smaller dt" pushed_in
 here=. expect run 1 "element [0-9]+ near .* m is turned inside out at t = 1" pushed_in 'watchdog={stop: false}'
+# gravity in other units than the rest; a body of elements that blows up names a node
+cat >weight.yaml <<'SCENE'
+abut: 1
+title: Gravity that nothing bears
+gravity: [0, -10]
+time: {end: 0.3, cfl: 0.5}
+grid: {from: [0, 0], to: [4, 4], cell: 0.25, sides: {bottom: fixed}}
+materials: {m: {model: linear-elastic, E: 1e6, nu: 0, density: 1000}}
+bodies:
+  points: {method: material-points, material: m, shape: {box: [[0, 0], [1, 1]]}}
+  elements: {method: finite-elements, material: m, mesh: {box: [[2, 0], [3, 1]], elements: [4, 4], type: q4}}
+SCENE
+here=. expect check 0 - weight 'gravity=[0, -900]'
+here=. expect check 0 '--set gravity: warning: gravity: by 1100 m/s2 a column of body .elements., 1 m high, weighs 1.1e.06 Pa, 1.1 times the modulus' weight 'gravity=[0, -1100]'
+here=. expect check 0 - weight 'gravity=[0, -1100]' bodies.elements.gravity=false bodies.points.gravity=false
+here=. expect check 2 "--set gravity: error: gravity: by 1e.05 m/s2 body .points. would move at .* faster than waves in it \(31.62 m/s\)" weight 'gravity=[0, -1e5]'
+here=. expect run 1 "body 'elements': the kinetic energy is no finite number any more: node [0-9]+ at \(.*\) m has the velocity .*step 0, dt .*look at what drives it" weight \
+    'gravity=[0, -1e300]' bodies.points.gravity=false 'watchdog={stop: false}'
 [ $missed -eq 0 ] && echo "passed: $(basename "$0")"
 [ $missed -eq 0 ]
