@@ -106,7 +106,7 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
         report, s->scene->mark_time,
         "time.dt: body '%s' moves %.3g cells in the first step, at %.4g m/s; points must not pass a cell in a step: use a dt "
         "below %.3g s, or cfl",
-        body->name, cells, speed_of(s, b), s->critical_dt);
+        body->name, cells, speed_of(s, b), s->critical_dt > 0.0 ? s->critical_dt : s->scene->grid_cell / speed_of(s, b));
 }
 
 enum { FEW = 9 }; /* points: a body of one cell, with up to nine */

@@ -85,7 +85,7 @@ void ab_scene_take_time(ab_scene_reader *r, const ab_node *node) {
             ab_report_warning(r->base.report, v[TIME_DT]->mark, "time.dt %g s is longer than the whole run of %g s", scene->time_dt,
                               scene->time_end);
         if (scene->time_dt > 0 && scene->time_end / scene->time_dt > 1e12)
-            ab_report_error(r->base.report, v[TIME_DT]->mark, "time.dt: %g s up to %g s would take %.3g steps", scene->time_dt,
+            ab_report_error(r->base.report, v[TIME_DT]->mark, "time.dt: %g s up to %g s would take %.3g steps; use a larger dt (abut plan tells the stable limit), or cfl", scene->time_dt,
                             scene->time_end, scene->time_end / scene->time_dt);
     } else {
         ab_read_number(&r->base, &key[TIME_CFL], v[TIME_CFL], "time", &scene->time_cfl);

@@ -78,7 +78,7 @@ static void take_end(ab_scene_reader *r, const ab_node *node, const ab_node *con
         stage->end = before + 1.0;
     }
     if (stage->dt > 0.0 && (stage->end - before) / stage->dt > 1e12)
-        ab_report_error(r->base.report, v[STAGE_DT]->mark, "%s.dt: %g s up to %g s would take %.3g steps", where, stage->dt, stage->end,
+        ab_report_error(r->base.report, v[STAGE_DT]->mark, "%s.dt: %g s up to %g s would take %.3g steps; use a larger dt (abut plan tells the stable limit), or cfl", where, stage->dt, stage->end,
                         (stage->end - before) / stage->dt);
 }
 

@@ -78,10 +78,12 @@ ab_status ab_schedule_create(const ab_scene *scene, const ab_run_options *option
             "time in which they move by their size");
     }
     if (scene->time_end / s->dt > MOST_STEPS) {
-        const double dt = s->dt;
+        ab_report_error(report, scene->mark_time,
+                        "time.end: steps of about %.3g s (limit: %s) up to %g s would be %.3g, more than %g; look at what makes the step so short (cells, E, density, velocities and their "
+                        "units), or use a smaller end",
+                        s->dt, s->limit, scene->time_end, scene->time_end / s->dt, MOST_STEPS);
         ab_schedule_destroy(s);
-        return ab_report_error(report, scene->mark_time, "time.end: steps of about %.3g s up to %g s would be %.3g, more than %g", dt,
-                               scene->time_end, scene->time_end / dt, MOST_STEPS);
+        return AB_BAD_INPUT;
     }
     *out = s;
     return AB_OK;

@@ -51,8 +51,11 @@ static void destroy(ab_domain *domain) {
 
 static double critical_dt(ab_domain *domain, const char **limit) {
     mpm_body *body = (mpm_body *)domain;
-    snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name,
-             body->h);
+    if (body->largest_speed > body->wave_speed)
+        snprintf(body->limit, sizeof body->limit, "points of '%s' at %.4g m/s, wave speed %.4g m/s, in cells of %.4g m", domain->spec->name, body->largest_speed,
+                 body->wave_speed, body->h);
+    else
+        snprintf(body->limit, sizeof body->limit, "wave speed %.4g m/s of '%s' in cells of %.4g m", body->wave_speed, domain->spec->name, body->h);
     *limit = body->limit;
     body->last_limit = stable_courant(body) * body->h / (body->wave_speed + body->largest_speed);
     return body->last_limit;
@@ -343,7 +346,7 @@ static void measure(mpm_body *body) {
         body->motion.angular_momentum[2] += m * (x * vy - y * vx + spin);
         body->motion.centre[0] += m * x;
         body->motion.centre[1] += m * y;
-        body->largest_speed = fmax(body->largest_speed, sqrt(vx * vx + vy * vy));
+        body->largest_speed = fmax(body->largest_speed, hypot(vx, vy));
     }
     for (int c = 0; c < 2; ++c) body->motion.centre[c] /= body->motion.mass;
 }

@@ -232,7 +232,7 @@ struct mpm_body {
     double shear_modulus; /* Pa; only with boundary plugins, else 0 */
     double largest_speed; /* m/s */
     double point_mass;    /* kg, largest */
-    char limit[128];
+    char limit[192];
 
     mpm_load *loads;
     size_t load_count;
