@@ -1,7 +1,8 @@
 /* extremes.h: how far quantities of a scene go: where a run stops being right, where it stops being stable, from where it is refused.
  *
- * A quantity (ab_extreme) is tried on a ladder from its easy end to its hard one, then the first rungs between which it stops being right, stable or accepted are halved.
- * Verdicts need not be monotone: all that was tried is kept, and pieces beyond the first change of verdict are told. Runs are processes (child_runs.h). */
+ * A quantity (ab_extreme) is tried on a ladder from its easy end to its hard one; then the rungs between which it stops being right, stable or accepted are halved, and those
+ * between which it begins to be, where its easy end is not. Verdicts need not be monotone: all that was tried is kept, and pieces beyond this stretch are told. Runs are
+ * processes (child_runs.h). */
 #ifndef AB_EXTREMES_H
 #define AB_EXTREMES_H
 
@@ -37,9 +38,13 @@ typedef struct ab_sample { /* one run */
     char why[2000]; /* one line: what is not right; "" where all is */
 } ab_sample;
 
-typedef struct ab_bracket {          /* neighbours between which something first becomes true */
+typedef struct ab_bracket {          /* neighbours between which a verdict changes */
     const ab_sample *before, *after; /* before NULL: from the first value on; after NULL: never */
 } ab_bracket;
+
+typedef struct ab_stretch { /* the first one along which verdicts are better than a given one */
+    ab_bracket begin, end;  /* begin.after NULL: there is none; then end.after is the first value, if any has a verdict */
+} ab_stretch;
 
 typedef struct ab_extremes {
     ab_child_runs runs;
@@ -59,8 +64,8 @@ ab_status ab_extremes_run(ab_extremes *extremes, const ab_scene *scene, ab_regis
 
 /* The samples of one quantity (not of the map) in the order of its way, in `list` of extremes->count places; how many. */
 size_t ab_extremes_along(const ab_extremes *extremes, size_t quantity, ab_sample **list);
-/* Where verdicts of at least `worst` begin. */
-ab_bracket ab_extremes_bracket(ab_sample *const *list, size_t count, ab_verdict worst);
+/* Of verdicts better than `worst`. */
+ab_stretch ab_extremes_stretch(ab_sample *const *list, size_t count, ab_verdict worst);
 /* The sample of a map's cell, or NULL. */
 const ab_sample *ab_extremes_cell(const ab_extremes *extremes, size_t rung, size_t second_rung);
 size_t ab_extremes_rungs(const ab_extreme *quantity);

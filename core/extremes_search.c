@@ -1,4 +1,4 @@
-/* extremes_search.c: which values are tried: ladders first, then halves between rungs where the verdict changes. */
+/* extremes_search.c: which values are tried: ladders first, then halves between rungs where the verdict changes: where the first stretch of each kind begins and ends. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,17 +158,22 @@ size_t ab_extremes_along(const ab_extremes *x, size_t quantity, ab_sample **list
     return count;
 }
 
-ab_bracket ab_extremes_bracket(ab_sample *const *list, size_t count, ab_verdict worst) {
-    ab_bracket bracket = {NULL, NULL};
-    for (size_t i = 0; i < count; i++) {
+ab_stretch ab_extremes_stretch(ab_sample *const *list, size_t count, ab_verdict worst) {
+    ab_stretch stretch = {{NULL, NULL}, {NULL, NULL}};
+    const ab_sample *first = NULL;
+    for (size_t i = 0; i < count && stretch.end.after == NULL; i++) {
         if (list[i]->verdict == AB_VERDICT_NONE) continue;
-        if (list[i]->verdict >= worst) {
-            bracket.after = list[i];
-            return bracket;
-        }
-        bracket.before = list[i];
+        if (first == NULL) first = list[i];
+        if (list[i]->verdict < worst) {
+            if (stretch.begin.after == NULL) stretch.begin.after = list[i];
+            stretch.end.before = list[i];
+        } else if (stretch.begin.after == NULL)
+            stretch.begin.before = list[i];
+        else
+            stretch.end.after = list[i];
     }
-    return bracket;
+    if (stretch.begin.after == NULL) stretch.begin.before = NULL, stretch.end.after = first;
+    return stretch;
 }
 
 const ab_sample *ab_extremes_cell(const ab_extremes *x, size_t rung, size_t second_rung) {
@@ -211,10 +216,10 @@ static void halve(ab_extremes *x) {
         for (size_t i = known; i < x->count; i++) waiting += x->samples[i]->quantity == q;
         if (waiting > 0) continue;
         count = ab_extremes_along(x, q, list);
-        double done[3];
-        for (int c = 0; c < 3; c++) {
-            const ab_bracket bracket = ab_extremes_bracket(list, count, changes[c]);
-            done[c] = middle_of(&x->spec->quantities[q], &bracket);
+        double done[6];
+        for (int c = 0; c < 6; c++) {
+            const ab_stretch stretch = ab_extremes_stretch(list, count, changes[c / 2]);
+            done[c] = middle_of(&x->spec->quantities[q], c % 2 == 0 ? &stretch.begin : &stretch.end);
             bool twice = !isfinite(done[c]);
             for (int k = 0; k < c && !twice; k++) twice = done[k] == done[c];
             for (size_t i = 0; i < count && !twice; i++) twice = list[i]->value == done[c];

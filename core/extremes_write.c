@@ -10,7 +10,7 @@ enum { CUT = 200 }; /* characters of a message in the table; the whole stands in
 typedef struct found { /* of one quantity */
     ab_sample **list;
     size_t count;
-    ab_bracket right, stable, refused;
+    ab_stretch right, stable, accepted;
     const ab_sample *fault;
 } found;
 
@@ -18,30 +18,48 @@ static bool look(const ab_extremes *x, size_t quantity, found *f) {
     f->list = calloc(x->count + 1, sizeof(ab_sample *));
     if (f->list == NULL) return false;
     f->count = ab_extremes_along(x, quantity, f->list);
-    f->right = ab_extremes_bracket(f->list, f->count, AB_VERDICT_WRONG);
-    f->stable = ab_extremes_bracket(f->list, f->count, AB_VERDICT_UNSTABLE);
-    f->refused = ab_extremes_bracket(f->list, f->count, AB_VERDICT_REFUSED);
+    f->right = ab_extremes_stretch(f->list, f->count, AB_VERDICT_WRONG);
+    f->stable = ab_extremes_stretch(f->list, f->count, AB_VERDICT_UNSTABLE);
+    f->accepted = ab_extremes_stretch(f->list, f->count, AB_VERDICT_REFUSED);
     f->fault = ab_extremes_fault(x, quantity);
     return true;
 }
 
-/* "0.975, not 1", "1e8, the end", "not even 0.1". */
-static const char *up_to(const found *f, const ab_bracket *bracket, char *text, size_t size) {
-    if (bracket->before == NULL && bracket->after == NULL)
+/* "0.975, not 1", "1e8, the end", "not even 0.1", "from 12, not 11, up to 1e8, the end". */
+static const char *up_to(const found *f, const ab_stretch *stretch, char *text, size_t size) {
+    const ab_sample *last = stretch->end.before, *after = stretch->end.after;
+    int used = 0;
+    if (stretch->begin.before != NULL)
+        used = snprintf(text, size, "from %s, not %s, up to ", stretch->begin.after->shown, stretch->begin.before->shown);
+    text += used, size -= (size_t)used;
+    if (last == NULL && after == NULL)
         snprintf(text, size, "not known");
-    else if (bracket->after == NULL)
-        snprintf(text, size, bracket->before == f->list[f->count - 1] ? "%s, the end" : "%s", bracket->before->shown);
-    else if (bracket->before == NULL)
-        snprintf(text, size, "not even %s", bracket->after->shown);
+    else if (after == NULL)
+        snprintf(text, size, last == f->list[f->count - 1] ? "%s, the end" : "%s", last->shown);
+    else if (last == NULL)
+        snprintf(text, size, "not even %s", after->shown);
     else
-        snprintf(text, size, "%s, not %s", bracket->before->shown, bracket->after->shown);
+        snprintf(text, size, "%s, not %s", last->shown, after->shown);
+    return text - used;
+}
+
+/* "nowhere", "0.5", "0.1 up to 0.2", "0.1 up to 0.2 and from 0.5": the first where the easy end is refused already. */
+static const char *refused_from(const found *f, char *text, size_t size) {
+    const ab_sample *last = f->accepted.begin.before, *again = f->accepted.end.after;
+    if (last == NULL)
+        snprintf(text, size, "%s", again != NULL ? again->shown : "nowhere");
+    else
+        snprintf(text, size, again != NULL ? "%s up to %s and from %s" : "%s up to %s", f->list[0]->shown, last->shown,
+                 again != NULL ? again->shown : "");
     return text;
 }
 
-/* Which sample tells how it ends: of the run that stops being stable, else of the one that stops being right. */
+/* Which sample tells how it ends: of the run that stops being stable, else of the one that stops being right, else of what comes before either. */
 static const ab_sample *ending(const found *f) {
-    if (f->stable.after != NULL) return f->stable.after;
-    return f->right.after != NULL ? f->right.after : f->refused.after;
+    if (f->stable.end.after != NULL) return f->stable.end.after;
+    if (f->right.end.after != NULL) return f->right.end.after;
+    if (f->accepted.end.after != NULL) return f->accepted.end.after;
+    return f->stable.begin.before != NULL ? f->stable.begin.before : f->right.begin.before;
 }
 
 /* A message in a cell of a table: short, and no '|'. */
@@ -52,13 +70,13 @@ static void cell(FILE *stream, const char *text, size_t most) {
 }
 
 static void table_row(const ab_extremes *x, size_t q, const found *f, FILE *stream) {
-    char text[200];
+    char text[400];
     const ab_sample *end = ending(f);
     fprintf(stream, "| ");
     cell(stream, x->spec->quantities[q].name, 60);
     fprintf(stream, " | %s", up_to(f, &f->right, text, sizeof text));
     fprintf(stream, " | %s", up_to(f, &f->stable, text, sizeof text));
-    fprintf(stream, " | %s | %s | ", f->refused.after != NULL ? f->refused.after->shown : "nowhere",
+    fprintf(stream, " | %s | %s | ", refused_from(f, text, sizeof text),
             f->fault == NULL                      ? "yes"
             : x->spec->quantities[q].open != NULL ? "not yet"
                                                   : "no");
@@ -176,11 +194,16 @@ static void json_text(ab_text *text, const char *name, const char *value) {
         ab_text_add(text, "null");
 }
 
-static void json_bracket(ab_text *text, const char *name, const ab_bracket *bracket) {
+static const char *shown(const ab_sample *s) { return s != NULL ? s->shown : NULL; }
+
+/* "last_not" and "first": where the easy end is not, the last that is not and the first that is; "last" and "first_not": the other end of the stretch. */
+static void json_stretch(ab_text *text, const char *name, const ab_stretch *stretch) {
     ab_text_add(text, ",\n     \"%s\": {\"last\": ", name);
-    if (bracket->before != NULL) ab_text_add_escaped(text, bracket->before->shown);
-    if (bracket->before == NULL) ab_text_add(text, "null");
-    json_text(text, "first_not", bracket->after != NULL ? bracket->after->shown : NULL);
+    if (stretch->end.before != NULL) ab_text_add_escaped(text, stretch->end.before->shown);
+    if (stretch->end.before == NULL) ab_text_add(text, "null");
+    json_text(text, "first_not", shown(stretch->end.after));
+    if (stretch->begin.before != NULL)
+        json_text(text, "last_not", shown(stretch->begin.before)), json_text(text, "first", shown(stretch->begin.after));
     ab_text_add(text, "}");
 }
 
@@ -208,9 +231,9 @@ static void json_quantity(const ab_extremes *x, size_t q, const found *f, ab_tex
     ab_text_add(text, "]");
     if (f->count > 0) json_text(text, "from", f->list[0]->shown), json_text(text, "to", f->list[f->count - 1]->shown);
     json_text(text, "scale", e->values != NULL ? "values" : e->logarithmic ? "log" : "linear");
-    json_bracket(text, "right", &f->right);
-    json_bracket(text, "stable", &f->stable);
-    json_bracket(text, "accepted", &f->refused);
+    json_stretch(text, "right", &f->right);
+    json_stretch(text, "stable", &f->stable);
+    json_stretch(text, "accepted", &f->accepted);
     const ab_sample *end = ending(f);
     ab_text_add(text, ",\n     \"holds\": %s", f->fault != NULL ? "false" : "true");
     json_text(text, "open", e->open);

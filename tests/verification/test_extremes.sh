@@ -51,6 +51,16 @@ must "by the command line" says 0 "^. constants.part . 1, not 1.0" "$build/abut"
 must "a formula with a condition" says 0 "^. k . 2, the end" "$build/abut" extremes bar.yaml --set 'extremes={vary: [{name: k, set: constants.v0, value: "@ > 1 ? 1e-4 : 2e-4", values: [1, 2]}]}' -o condition -q
 must "right up to what is not tried" says 2 "right_to: 1.4 is not between from, 0.5, and to, 1.2" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.4 -o bar -q
 must "what must be right and is not, with --strict" says 3 "dt does not hold: unstable at" "$build/abut" extremes bar.yaml --set extremes.vary[0].right_to=1.1 --strict -o bar -q
+# From the other end: the first value is not right, stable or accepted, and where it begins to be is found as closely.
+must "the stable limit of a bar from beyond it" says 0 "^. part . from 1, not 1.01, up to 0.5, the end . from 1, not 1.01, up to 0.5, the end . nowhere . no . .*turned inside out" "$build/abut" extremes bar.yaml --set 'extremes.vary=[{name: part, set: constants.part, from: 1.2, to: 0.5}]' -o line -q
+must "meshes from too coarse a one on" says 0 "^. cells . from 6, not 5, up to 16, the end . 16, the end . nowhere . no . 'end' is" "$build/abut" extremes bar.yaml --set 'extremes.vary=[{name: cells, set: constants.cells, from: 2, to: 16, rungs: 3, whole: true}]' --set 'expect[0].tolerance=5e-3' -o meshes -q
+must "what is refused at both ends" says 0 "^. nu . from -0.17, not -0.2, up to 0.25, not 0.28 . from -0.8, not -0.82, up to 0.43, not 0.45 . -1.5 up to -1 and from 0.5 . no " "$build/abut" extremes bar.yaml --set 'extremes.vary=[{name: nu, set: constants.nu, from: -1.5, to: 0.6}]' -o ends -q
+must "their files" python3 - <<'PYTHON'
+import json
+cells = json.load(open("meshes/extremes.json"))["quantities"][0]
+assert cells["right"] == {"last_not": "5", "first": "6", "last": "16", "first_not": None} and cells["stable"] == {"last": "16", "first_not": None}, cells
+assert json.load(open("ends/extremes.json"))["quantities"][0]["accepted"] == {"last_not": "-1", "first": "-0.97", "last": "0.47", "first_not": "0.5"}
+PYTHON
 must "pieces that do not go one way" says 0 "v0 does not go one way: right 1e-4, wrong 0, right 2e-4" "$build/abut" extremes bar.yaml --vary constants.v0=1e-4,0,2e-4 --set 'expect=[{name: end, monitor: end, reference: 1e-4/w, norm: peak, scale: 1/w, tolerance: 1e-3}]' --set 'expect[0].reference="max(v0, 1e-4)/w"' --set 'expect[0].tolerance=1e-5' -o pieces -q
 one=(--vary 'time.end=12.3*pi/w' --set constants.part=0.9 -q) # ends in the middle of a vibration, where a step as long as this has energy made
 "$build/abut" extremes bar.yaml "${one[@]}" -o made >said
