@@ -30,7 +30,7 @@ static const option_text option_texts[] = {
     {AB_OPTION_STRICT, "strict", 0, NULL, "exit 3 when an expect of the scene is missed (extremes: when a quantity does not hold)"},
     {AB_OPTION_JSON, "json", 0, NULL, "print JSON"},
     {AB_OPTION_VARY, "vary", 0, "PATH=VALUES",
-     "values to try at PATH, separated by commas, from cheap to dear (extremes: FROM..TO, too); may be repeated"},
+     "values to try at PATH, separated by commas (extremes: from easy to hard, or FROM..TO); may be repeated"},
     {AB_OPTION_PATH, "path", 0, NULL, "follow the best settings from the scene's own, in place of all combinations"},
     {AB_OPTION_TOLERANCE, "tolerance", 0, "ERROR", "which is the cheapest run with no larger error than this"},
     {AB_OPTION_SECONDS, "seconds", 0, "S", "which is the most accurate run that takes no more processor time than this"},

@@ -116,7 +116,10 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
     AB_TRY(check_place(line, report));
     char folder[PATH_MAX + 32];
     ab_trade trade = {.runs = ab_command_child_runs(line, "trade", folder, sizeof folder), .spec = &scene->trade};
-    ab_status status = ab_trade_plan(&trade, report);
+    const ab_run_options options = {
+        .threads = 1, .quiet = true, .methods = line->methods, .method_count = line->method_count, .interact = line->interact};
+    ab_status status = ab_trade_order(&trade, &options, registry, report);
+    if (status == AB_OK) status = ab_trade_plan(&trade, report);
     if (status == AB_OK) status = ab_trade_run(&trade, scene, registry, report);
     const bool stopped = status > 128;
     if (status == AB_OK || stopped) { /* what is done is judged all the same */

@@ -1,4 +1,4 @@
-/* plan_lists.h: what a plan goes over, as JSON and as text: plugins in use, what is left out, sums over the bodies. For plan*.c only. */
+/* plan_lists.h: what a plan goes over, as JSON and as text: plugins in use, what is left out, sums over the bodies. For plan*.c and trade_order.c. */
 #ifndef AB_PLAN_LISTS_H
 #define AB_PLAN_LISTS_H
 

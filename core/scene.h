@@ -210,7 +210,7 @@ typedef struct ab_expect_spec {
     double tolerance, scale; /* scale 0: the reference's own size */
 } ab_expect_spec;
 
-typedef struct ab_ladder { /* of `trade`: a setting and its values, from cheap to dear */
+typedef struct ab_ladder { /* of `trade`: a setting and its values; once they are to be run (trade_order.c) from coarse to fine */
     const char *name;
     const char **paths; /* as for --set; all of them get the value */
     size_t path_count;

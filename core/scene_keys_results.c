@@ -115,7 +115,7 @@ SECTION(trade, "trade", trade, NULL,
 static const ab_key ladder[] = {
     [LADDER_SET] = {"set", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED,
                     .help = "path of a value, as for --set, or a list of paths that all get it"},
-    [LADDER_VALUES] = {"values", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "list of values, from cheap to dear"},
+    [LADDER_VALUES] = {"values", AB_KEY_SECTION, .flags = AB_KEY_REQUIRED, .help = "list of values, in any order"},
     [LADDER_NAME] = {"name", AB_KEY_TEXT, .help = "what the table calls it; default: the path"},
 };
 SECTION(ladder, "trade.vary[i]", ladder, NULL, "A list.", "- {set: grid.cell, values: [0.5, 0.25, 0.125]}\n");

@@ -64,7 +64,7 @@ static void take_ladder(ab_scene_reader *r, const ab_node *node, const char *whe
     ab_read_text(&r->base, &ab_section_ladder.keys[LADDER_NAME], v[LADDER_NAME], where, &name);
     ladder->name = name != NULL ? name : ladder->paths[0];
     const ab_node *values = v[LADDER_VALUES];
-    if (!ab_scene_is_list(r, values, ab_where_join(path, where, "values"), "values, from cheap to dear")) return;
+    if (!ab_scene_is_list(r, values, ab_where_join(path, where, "values"), "values")) return;
     if (values->count == 0 || values->count > AB_TRADE_VALUES) {
         ab_report_error(r->base.report, values->mark, "%s has %zu values; give 1 to %d", path, values->count, AB_TRADE_VALUES);
         return;

@@ -1,6 +1,6 @@
 /* trade.h: what accuracy costs: one scene run with several settings, its errors beside its cost.
  *
- * A ladder is a setting with its values, from cheap to dear; the runs (child_runs.h) are all combinations, or those of a walk along the front
+ * A ladder is a setting with its values, from coarse to fine (trade_order.c); the runs (child_runs.h) are all combinations, or those of a walk along the front
  * from the scene's own settings (trade_path.c). */
 #ifndef AB_TRADE_H
 #define AB_TRADE_H
@@ -11,6 +11,7 @@
 #include "core/document.h"
 #include "core/files.h"
 #include "core/scene.h"
+#include "core/scheduler.h"
 
 enum { AB_TRADE_LADDERS = 8, AB_TRADE_VALUES = 64, AB_TRADE_PATHS = 16, AB_TRADE_RUNS = 4096 };
 
@@ -18,6 +19,7 @@ typedef struct ab_trial { /* one run */
     ab_child run;
     size_t rung[AB_TRADE_LADDERS];
     double remainder;       /* of the ledger, relative to the largest energy that moved */
+    double work;            /* points and nodes of elements, times steps */
     double error;           /* the largest of `errors`; NaN: not known */
     double *errors;         /* per judge */
     double *values, *peaks; /* per judge: what was measured; of a monitor, its largest size in the run */
@@ -30,6 +32,8 @@ typedef struct ab_judge { /* what errors are measured of: an expect, or a monito
     const char *name;
     bool monitor;
     double reference; /* monitors: extrapolated, or of the finest run */
+    double order;     /* with which it tends to a limit; NaN: to none */
+    char doubt[300];  /* why its reference is none to rely on; "": no such thing */
 } ab_judge;
 
 typedef struct ab_trade {
@@ -41,9 +45,17 @@ typedef struct ab_trade {
     size_t count;
     ab_judge *judges;
     size_t judge_count;
-    char reference[600]; /* how the references of monitors were found; "" with expects */
+    double work[AB_TRADE_LADDERS][AB_TRADE_VALUES]; /* point-steps with one value, all else as the scene has it; not positive: not known */
+    const ab_trial *finest;                         /* against which errors of monitors are; NULL: none, or expects */
+    char reference[600];                            /* how the references of monitors were found; "" with expects */
 } ab_trade;
 
+/* trade_order.c: brings the values of every ladder into their order from coarse to fine, that of rising point-steps; before ab_trade_plan. */
+ab_status ab_trade_order(ab_trade *trade, const ab_run_options *options, ab_registry *registry, ab_report *report);
+/* The same with what is known: numbers by their work, words only where it differs by a tenth; all else stays as it was given. */
+void ab_trade_sort(ab_ladder *ladder, double *work);
+/* Whether the three rungs up to `top` of a ladder refine a run by a constant factor. */
+bool ab_trade_refines(const ab_trade *trade, size_t ladder, size_t top, double *factor);
 /* All combinations as trials, the last ladder changing fastest; folders named. */
 ab_status ab_trade_plan(ab_trade *trade, ab_report *report);
 void ab_trade_clear(ab_trade *trade);

@@ -5,6 +5,8 @@
 
 #include "core/trade.h"
 
+static const double ROUNDED = 1e-9; /* of a monitor's size: runs that differ by less are alike */
+
 static double number_of(const ab_node *map, const char *key) {
     const ab_node *node = ab_node_find(map, key);
     return node != NULL && node->kind == AB_NODE_SCALAR && !ab_node_is_null(node) ? strtod(node->text, NULL) : NAN;
@@ -52,6 +54,7 @@ static void read_summary(const ab_trade *trade, ab_trial *trial, ab_report *repo
     }
     const ab_node *ledger = ab_node_find(document->root, "ledger"), *expects = ab_node_find(document->root, "expects");
     if (ledger != NULL) trial->remainder = number_of(ledger, "remainder_relative");
+    trial->work = number_of(document->root, "steps") * fmax(number_of(document->root, "points") + number_of(document->root, "nodes"), 1);
     for (size_t e = 0; expects != NULL && expects->kind == AB_NODE_LIST && e < expects->count; e++) {
         const ab_node *name = ab_node_find(expects->items[e], "name");
         for (size_t k = 0; k < trade->judge_count; k++) {
@@ -104,71 +107,94 @@ static ab_trial *at(const ab_trade *trade, const size_t rung[AB_TRADE_LADDERS]) 
     return trade->trials[place].run.state == AB_CHILD_DONE ? &trade->trials[place] : NULL;
 }
 
-static ab_trial *finest(const ab_trade *trade) {
+/* The one highest on all ladders together; of several the one with the most point-steps; of these the last. */
+static ab_trial *find_finest(const ab_trade *trade) {
     ab_trial *best = NULL;
     size_t most = 0;
     for (size_t i = 0; i < trade->count; i++) {
-        size_t height = 1;
-        for (size_t k = 0; k < trade->spec->ladder_count; k++) height += trade->trials[i].rung[k];
-        if (trade->trials[i].run.state == AB_CHILD_DONE && height >= most) most = height, best = &trade->trials[i];
+        ab_trial *trial = &trade->trials[i];
+        size_t height = 0;
+        for (size_t k = 0; k < trade->spec->ladder_count; k++) height += trial->rung[k];
+        if (trial->run.state != AB_CHILD_DONE || (best != NULL && (height < most || (height == most && trial->work < best->work))))
+            continue;
+        most = height, best = trial;
     }
     return best;
 }
 
 /* Three runs that differ on one ladder alone, by a constant factor: the limit that their values tend to (Richardson 1911, with the order they show;
- * Roache 1998). False where they do not tend to one: not monotone, or an order out of 0.5 to 6. */
-static bool extrapolate(double coarse, double middle, double fine, double factor, double *limit) {
-    const double ratio = (coarse - middle) / (middle - fine);
-    if (!(ratio > 0) || !isfinite(ratio)) return false;
-    const double order = log(ratio) / log(factor);
-    if (!(order > 0.5 && order < 6)) return false;
-    *limit = fine + (fine - middle) / (ratio - 1);
-    return true;
+ * Roache 1998). False where they do not tend to one, with the reason as the judge's doubt: not monotone, or an order out of 0.5 to 6. */
+static bool extrapolate(ab_judge *judge, const double value[3], double size, double factor, const char *along) {
+    const double first = value[1] - value[0], second = value[2] - value[1], ratio = first / second;
+    judge->order = NAN;
+    judge->doubt[0] = '\0';
+    if (fabs(first) <= ROUNDED * size && fabs(second) <= ROUNDED * size) return false; /* the same but for rounding */
+    judge->order = log(fabs(ratio)) / log(factor);
+    if (ratio > 0 && judge->order > 0.5 && judge->order < 6) {
+        judge->reference = value[2] + second / (ratio - 1);
+        return true;
+    }
+    snprintf(judge->doubt, sizeof judge->doubt, "'%.60s' %s along %.60s: it changes by %.2g, then by %.2g", judge->name,
+             fabs(second) >= fabs(first) ? "does not converge"
+             : ratio < 0                 ? "goes to and fro"
+             : judge->order <= 0.5       ? "hardly converges"
+                                         : "shows no order of convergence yet",
+             along, first, second);
+    judge->order = NAN;
+    return false;
+}
+
+/* The ladder along which there are three runs up to the finest; their values go to `three`. NULL: none. */
+static const ab_ladder *find_three(const ab_trade *trade, ab_trial *best, ab_trial *three[3], double *factor) {
+    for (size_t k = 0; k < trade->spec->ladder_count; k++) {
+        size_t rung[AB_TRADE_LADDERS], there = 0;
+        memcpy(rung, best->rung, sizeof rung);
+        if (!ab_trade_refines(trade, k, best->rung[k], factor)) continue;
+        for (size_t i = 0; i < 3; i++) {
+            rung[k] = best->rung[k] - 2 + i;
+            three[i] = at(trade, rung);
+            there += three[i] != NULL;
+        }
+        if (there == 3) return &trade->spec->ladders[k];
+    }
+    return NULL;
 }
 
 static void find_references(ab_trade *trade) {
-    ab_trial *best = finest(trade), *three[3] = {NULL, NULL, best};
+    ab_trial *best = find_finest(trade), *three[3];
+    trade->finest = best;
     if (best == NULL) return;
-    const ab_ladder *along = NULL;
-    double factor = 0;
-    for (size_t k = 0; k < trade->spec->ladder_count && along == NULL; k++) {
-        const ab_ladder *ladder = &trade->spec->ladders[k];
-        size_t rung[AB_TRADE_LADDERS];
-        memcpy(rung, best->rung, sizeof rung);
-        if (best->rung[k] < 2) continue;
-        double value[3];
-        bool number = true;
-        for (size_t i = 0; i < 3; i++) {
-            char *end;
-            rung[k] = best->rung[k] - 2 + i;
-            three[i] = at(trade, rung);
-            value[i] = strtod(ladder->values[rung[k]], &end);
-            number = number && *end == '\0' && value[i] > 0 && three[i] != NULL;
-        }
-        if (!number || fabs(log(value[1] / value[0]) - log(value[2] / value[1])) > 1e-6) continue;
-        factor = fmax(value[1] / value[0], value[0] / value[1]);
-        if (factor > 1) along = ladder;
-    }
-    char settings[160];
-    ab_trade_settings(trade, best, settings, sizeof settings);
+    double factor = 0, low = INFINITY, high = -INFINITY;
+    const ab_ladder *along = find_three(trade, best, three, &factor);
     size_t limits = 0;
     for (size_t k = 0; k < trade->judge_count; k++) {
         ab_judge *judge = &trade->judges[k];
-        judge->reference = best->values[k];
-        if (along != NULL && extrapolate(three[0]->values[k], three[1]->values[k], three[2]->values[k], factor, &judge->reference))
-            limits++;
         const double size = best->peaks[k]; /* not that of the last value, which may well be next to 0 */
+        judge->reference = best->values[k];
+        judge->order = NAN;
+        judge->doubt[0] = '\0';
+        if (along != NULL &&
+            extrapolate(judge, (double[]){three[0]->values[k], three[1]->values[k], three[2]->values[k]}, size, factor, along->name))
+            limits++, low = fmin(low, judge->order), high = fmax(high, judge->order);
         for (size_t i = 0; i < trade->count; i++)
             if (trade->trials[i].run.state == AB_CHILD_DONE)
                 trade->trials[i].errors[k] = size > 0 ? fabs(trade->trials[i].values[k] - judge->reference) / size : 0;
         if (judge->reference == best->values[k]) best->errors[k] = NAN; /* it is its own measure */
     }
-    if (along != NULL && limits > 0)
+    char settings[160], finest[240], orders[40];
+    ab_trade_settings(trade, best, settings, sizeof settings);
+    snprintf(finest, sizeof finest, "the finest run, %s (%.3g point-steps)", settings, best->work);
+    snprintf(orders, sizeof orders, high - low < 0.1 ? "%.2g" : "%.2g to %.2g", low, high);
+    if (limits > 0)
         snprintf(trade->reference, sizeof trade->reference,
-                 "errors are against the limit that %.100s tends to (%zu of %zu monitors), else against the finest run, %s", along->name,
-                 limits, trade->judge_count, settings);
+                 "errors are against the limit that %.100s tends to (%zu of %zu monitors, with order %s; finest: %s, %.3g point-steps)%s",
+                 along->name, limits, trade->judge_count, orders, settings, best->work,
+                 limits < trade->judge_count ? ", else against the finest run" : "");
     else
-        snprintf(trade->reference, sizeof trade->reference, "errors are against the finest run, %s", settings);
+        snprintf(trade->reference, sizeof trade->reference, "errors are against %s%s", finest,
+                 along != NULL ? ""
+                               : ", and nothing says how near that is to the limit: no ladder has three runs up to it, each finer by the "
+                                 "same factor");
 }
 
 /* ---- verdicts ------------------------------------------------------------------------------------------------------------------------------ */

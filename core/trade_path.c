@@ -126,10 +126,11 @@ ab_status ab_trade_walk_begin(ab_trade *trade, ab_report *report) {
     if (!trade->judges[0].monitor) return status;
     /* errors are against the finest run, or the limit of three: these come first */
     want_first(&trade->trials[top]);
-    for (size_t k = 0; k < trade->spec->ladder_count; k++)
-        if (ab_ladder_is_numeric(&trade->spec->ladders[k]) && trade->spec->ladders[k].value_count > 2) {
-            for (size_t below = 1; below <= 2; below++) want_first(&trade->trials[top - below * stride(trade, k)]);
-            break;
-        }
+    for (size_t k = 0; k < trade->spec->ladder_count; k++) {
+        double factor;
+        if (!ab_trade_refines(trade, k, trade->spec->ladders[k].value_count - 1, &factor)) continue;
+        for (size_t below = 1; below <= 2; below++) want_first(&trade->trials[top - below * stride(trade, k)]);
+        break;
+    }
     return status;
 }

@@ -60,6 +60,14 @@ static void sentence(const ab_trade *trade, FILE *stream) {
                 trade->trials[good].error);
 }
 
+/* What the sentence rests on, where that is not firm. */
+static void doubts(const ab_trade *trade, FILE *stream) {
+    size_t count = 0;
+    for (size_t k = 0; k < trade->judge_count; k++)
+        if (trade->judges[k].doubt[0] != '\0') fprintf(stream, "%s%s", count++ == 0 ? "  But " : "; ", trade->judges[k].doubt);
+    if (count > 0) fprintf(stream, ". There errors are no more than differences to the finest run, whose own may be larger.\n");
+}
+
 /* What a walk left out, and why. */
 static void path_notes(const ab_trade *trade, size_t wanted, FILE *stream) {
     fprintf(stream, "  %zu of %zu combinations were run: a path from the scene's own settings along the front\n", wanted, trade->count);
@@ -113,6 +121,7 @@ void ab_trade_table(const ab_trade *trade, FILE *stream) {
     if (left > 0) fprintf(stream, "  %zu of %zu runs have no answer\n", left, trade->spec->path ? wanted : trade->count);
     if (trade->spec->path) path_notes(trade, wanted, stream);
     sentence(trade, stream);
+    doubts(trade, stream);
 }
 
 static void csv_number(ab_text *text, double value) {
@@ -167,6 +176,16 @@ static void write_json(const ab_trade *trade, ab_text *text) {
     ab_text_add(text, ",\n  \"search\": \"%s\", \"cost\": \"%s\"", trade->spec->path ? "path" : "all", trade->spec->wall ? "wall" : "cpu");
     ab_text_add(text, ",\n  \"reference\": ");
     ab_text_add_escaped(text, trade->reference);
+    ab_text_add(text, ", \"finest\": ");
+    if (trade->finest == NULL) ab_text_add(text, "null");
+    if (trade->finest != NULL) json_settings(trade, trade->finest, text);
+    ab_text_add(text, ", \"doubts\": [");
+    for (size_t k = 0, count = 0; k < trade->judge_count; k++) {
+        if (trade->judges[k].doubt[0] == '\0') continue;
+        ab_text_add(text, "%s", count++ > 0 ? ", " : "");
+        ab_text_add_escaped(text, trade->judges[k].doubt);
+    }
+    ab_text_add(text, "]");
     json_number(text, "tolerance", trade->spec->tolerance);
     json_number(text, "seconds", trade->spec->seconds);
     const size_t cheap = ab_trade_cheapest(trade, trade->spec->tolerance), good = ab_trade_most_accurate(trade, trade->spec->seconds);

@@ -141,11 +141,47 @@ static void test_seconds_end_a_ladder(void **state) {
     assert_int_equal(fine[1], 0);
 }
 
+/* Numbers in the order of their point-steps; words only where these differ clearly; where nothing is known as given, but cells and steps from large to small. */
+static void test_ladders_go_from_coarse_to_fine(void **state) {
+    (void)state;
+    const char *cells[] = {"16", "4", "8"}, *cell[] = {"0.1", "0.4", "0.2"}, *mu[] = {"3", "1", "2"}, *types[] = {"q8", "q4"},
+               *basis[] = {"linear", "gimp"};
+    const char *path[] = {"constants.n"}, *cell_path[] = {"grid.cell"};
+    const struct {
+        ab_ladder ladder;
+        double work[3];
+        const char *expected[3];
+    } cases[] = {
+        {{.paths = path, .values = cells, .value_count = 3}, {4096, 64, 512}, {"4", "8", "16"}},
+        {{.paths = path, .values = cells, .value_count = 3}, {NAN, NAN, NAN}, {"4", "8", "16"}}, /* sorted just now, and left so */
+        {{.paths = cell_path, .values = cell, .value_count = 3}, {NAN, NAN, NAN}, {"0.4", "0.2", "0.1"}},
+        {{.paths = path, .values = mu, .value_count = 3}, {100, 100, 100}, {"3", "1", "2"}},
+        {{.paths = path, .values = types, .value_count = 2}, {300, 100}, {"q4", "q8"}},
+        {{.paths = path, .values = basis, .value_count = 2}, {105, 100}, {"linear", "gimp"}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        ab_ladder ladder = cases[i].ladder;
+        double work[3];
+        memcpy(work, cases[i].work, sizeof work);
+        ab_trade_sort(&ladder, work);
+        for (size_t v = 0; v < ladder.value_count; v++) assert_string_equal(ladder.values[v], cases[i].expected[v]);
+    }
+    ab_ladder three = {.paths = path, .values = (const char *[]){"4", "8", "16"}, .value_count = 3};
+    ab_trade_spec spec = {.ladders = &three, .ladder_count = 1};
+    ab_trade trade = {.spec = &spec, .work = {{64, 512, 4096}}};
+    double factor;
+    assert_true(ab_trade_refines(&trade, 0, 2, &factor) && fabs(factor - 2) < 1e-12);
+    assert_false(ab_trade_refines(&trade, 0, 1, &factor)); /* two runs */
+    trade.work[0][2] = 512;                                /* more of it is no finer */
+    assert_false(ab_trade_refines(&trade, 0, 2, &factor));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_path_ends_where_all_runs_end),
         cmocka_unit_test(test_uncertain_costs_change_little),
         cmocka_unit_test(test_seconds_end_a_ladder),
+        cmocka_unit_test(test_ladders_go_from_coarse_to_fine),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,6 +108,25 @@ for name in ("tip", "v"):
 e = [r["errors"]["tip"] for r in runs]
 assert 2 < e[0] / e[1] < 8 and 2 < e[1] / e[2] < 8, e
 PYTHON
+must "a ladder from fine to coarse is the same" says 0 "with order 0.77 to 1.1; finest: constants.cells=40, 3.2e.04 point-steps\)$" "$build/abut" trade plain.yaml -o plain --vary constants.cells=40,20,10
+must "to the last digit" python3 - <<'PYTHON'
+import json
+trade = json.load(open("plain/trade.json"))
+assert [r["settings"]["constants.cells"] for r in trade["runs"]] == ["10", "20", "40"] and trade["finest"] == {"constants.cells": "40"} and trade["doubts"] == []
+assert 2 < trade["runs"][0]["errors"]["tip"] / trade["runs"][1]["errors"]["tip"] < 8
+PYTHON
+must "the finest is that of the smallest cfl" says 0 "the finest run, time.cfl=0.1, constants.cells=20 .3.2e.04 point-steps., and nothing says how near" "$build/abut" trade plain.yaml -o plain --vary time.cfl=0.1,0.4 --vary constants.cells=20,10
+must "it alone has no error" python3 -c "
+import json
+assert [r['settings'] for r in json.load(open('plain/trade.json'))['runs'] if r['error'] is None] == [{'time.cfl': '0.1', 'constants.cells': '20'}]"
+must "a path begins with it, too" says 0 "errors are against the limit that constants.cells tends to" "$build/abut" trade plain.yaml -o plain --vary constants.cells=40,20,10,5 --path
+must "what does not converge is said with the sentence" says 0 "But 'tip' does not converge along constants.cells: it changes by 0.00[0-9]+, then by 0.00[0-9]+; 'v' does not .*differences to the finest run" \
+    "$build/abut" trade plain.yaml -o grows --set 'bodies.bar.velocity=["1e-4*cells*sin(pi*x/50)", 0]'
+must "and in its file" python3 -c "
+import json
+trade = json.load(open('grows/trade.json'))
+assert len(trade['doubts']) == 2 and trade['runs'][2]['error'] is None and 'limit' not in trade['reference'], trade"
+must "a ladder of what refines nothing tends to no limit" says 0 "the finest run, constants.part=4 " "$build/abut" trade plain.yaml -o part --set constants.part=1 --set 'bodies.bar.velocity=["1e-4*(1 + 1/part)*sin(pi*x/50)", 0]' --vary constants.part=1,2,4
 must "monitors that count are named" says 0 "the largest of 'v'$" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[v]'
 must "a monitor that is not there" says 2 "there is no monitor 'vv'; known: tip, v" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[vv]'
 must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" trade "$bar" --vary bodies.bar.transfer=flip,tpic --vary bodies.bar.update=musl,usl --set constants.cells=12 -o refused
