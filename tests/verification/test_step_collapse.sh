@@ -26,7 +26,7 @@ status=0
 "$build/abut" run "$scratch/collapse.yaml" --quiet -j 1 -o "$scratch/collapse" >"$scratch/log" 2>&1 || status=$?
 cat "$scratch/log"
 [ $status -eq 1 ] || { echo "ended with status $status"; exit 1; }
-for words in 'error: at 0.99999999[0-9]* s, after' 'collapsed to [0-9.]*e-10 s' "wave speed 1 m/s of 'rocket'" 'use a smaller cfl' 'is in the results'; do
+for words in 'error: at 0.99999999[0-9]* s, after' 'collapsed to [0-9.]*e-10 s' "limit: points of 'rocket' at 1[0-9.]*e.09 m/s, wave speed 1 m/s" 'use a smaller cfl' 'is in the results'; do
     grep -q "$words" "$scratch/log" || { echo "the error does not say: $words"; exit 1; }
 done
 python3 - "$scratch/collapse" <<'PYTHON'
