@@ -7,6 +7,8 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -18,6 +20,37 @@ static double now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Two programs in one folder would take each other's runs for their own. The lock is gone with the last process that has it open: this program, or a run that it began and that has
+ * yet to die with it; it can not be left behind. What is just ending is waited for. */
+static ab_status lock_folder(ab_child_runs *runs, ab_report *report) {
+    char path[4200], holder[40] = "";
+    snprintf(path, sizeof path, "%s/lock", runs->folder);
+    runs->lock = fopen(path, "a+");
+    if (runs->lock == NULL) return ab_report_failure(report, "%s cannot be written: %s", path, strerror(errno));
+    const double began = now();
+    while (flock(fileno(runs->lock), LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK && errno != EINTR) return AB_OK; /* a file system without locks */
+        if (now() - began < 2) {
+            nanosleep(&(struct timespec){0, 20000000}, NULL);
+            continue;
+        }
+        rewind(runs->lock);
+        if (fgets(holder, sizeof holder, runs->lock) == NULL) holder[0] = '\0';
+        holder[strspn(holder, "0123456789")] = '\0';
+        ab_child_runs_end(runs);
+        return ab_report_failure(report,
+                                 "another abut is at work in the folder %s%s%s: wait until it has ended, or give another folder with -o",
+                                 runs->folder, holder[0] != '\0' ? ", process " : "", holder);
+    }
+    if (ftruncate(fileno(runs->lock), 0) == 0) fprintf(runs->lock, "%ld\n", (long)getpid()), fflush(runs->lock);
+    return AB_OK;
+}
+
+void ab_child_runs_end(ab_child_runs *runs) {
+    if (runs->lock != NULL) fclose(runs->lock);
+    runs->lock = NULL;
 }
 
 static ab_status begin(const ab_child_runs *runs, ab_child *child, ab_report *report) {
@@ -51,8 +84,10 @@ static ab_status begin(const ab_child_runs *runs, ab_child *child, ab_report *re
         words[count++] = set;
     }
     if (status == AB_OK) {
-        const pid_t process = fork();
+        const pid_t parent = getpid(), process = fork();
         if (process == 0) {
+            prctl(PR_SET_PDEATHSIG, SIGKILL); /* with this program, however it ends: nobody else would wait for it */
+            if (getppid() != parent) _exit(127);
             const int file = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0666), nothing = open("/dev/null", O_RDWR);
             if (file >= 0) dup2(file, STDERR_FILENO);
             if (nothing >= 0) dup2(nothing, STDIN_FILENO), dup2(nothing, STDOUT_FILENO);
@@ -171,6 +206,7 @@ ab_status ab_child_runs_run(ab_child_runs *runs, const ab_scene *scene, ab_regis
     char folder[4200];
     snprintf(folder, sizeof folder, "%s/runs", runs->folder);
     AB_TRY(ab_folder_make(folder, report));
+    AB_TRY(lock_folder(runs, report));
     ab_child_fingerprint(runs, scene, registry);
     ab_child **running = calloc((size_t)runs->jobs, sizeof(ab_child *));
     if (running == NULL) return ab_report_failure(report, "no memory for %d runs at a time", runs->jobs);

@@ -3,6 +3,8 @@
 #ifndef AB_CHILD_RUNS_H
 #define AB_CHILD_RUNS_H
 
+#include <stdio.h>
+
 #include "core/scene.h"
 
 typedef enum ab_child_state {
@@ -42,6 +44,7 @@ typedef struct ab_child_runs { /* what the runs share, and whose they are */
         keep_failures; /* a run that broke off is an answer: it is not tried again, unless the machine was the reason (no memory, no room) */
     double limit;      /* s of wall time for a run; INFINITY: none */
     char fingerprint[40];
+    FILE *lock; /* of the folder, while these runs are at work there; NULL: not yet */
     void *owner;
     ab_child *(*next)(void *owner);                 /* to be run now; NULL: none, or none before another has ended */
     void (*ended)(void *owner, ab_child *child);    /* one has ended, or was there */
@@ -54,8 +57,11 @@ ab_status ab_child_plan(const ab_child_runs *runs, ab_child *child, const ab_ove
 void ab_child_clear(ab_child *child);
 void ab_child_say_why(ab_child *child, const char *why); /* copied */
 
-/* Runs what `next` gives and is not there yet, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. */
+/* Runs what `next` gives and is not there yet, `jobs` at a time, with progress on stderr. 128 + n where signal n stopped it; what is done stays. The folder is these runs' own
+ * until ab_child_runs_end: AB_FAILED where others are at work there. */
 ab_status ab_child_runs_run(ab_child_runs *runs, const ab_scene *scene, ab_registry *registry, ab_report *report);
+
+void ab_child_runs_end(ab_child_runs *runs);
 
 /* child_kept.c: of all that decides what a run gives: the scene but for what only commands read, meshes in files, overrides, the program and every plugin it finds. */
 void ab_child_fingerprint(ab_child_runs *runs, const ab_scene *scene, ab_registry *registry);

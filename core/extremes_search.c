@@ -133,6 +133,7 @@ void ab_extremes_clear(ab_extremes *x) {
         free(x->samples[i]);
     }
     free(x->samples);
+    ab_child_runs_end(&x->runs);
     x->samples = NULL;
     x->count = x->capacity = 0;
 }

@@ -46,6 +46,7 @@ void ab_trade_clear(ab_trade *trade) {
         free(trial->errors), free(trial->values), free(trial->peaks);
     }
     free(trade->trials), free(trade->judges);
+    ab_child_runs_end(&trade->runs);
     trade->trials = NULL, trade->judges = NULL;
     trade->count = trade->judge_count = 0;
 }

@@ -133,6 +133,19 @@ must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" tra
 must "the limit stops dear runs" says 0 "cheaper run is over the limit" "$build/abut" trade "$bar" --vary constants.cells=12,1600,3200 --set trade.limit=3 -o limit
 must "a signal leaves what is done" says 124 "1 of 2 runs have no answer" timeout -s INT 6 "$build/abut" trade "$bar" --vary constants.cells=12,1600 -o signal
 must "and it goes on from there" says 0 "done before" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o signal
+# A folder is of one program at a time; of one that was killed its runs are gone, too, and the next goes on at once.
+"$build/abut" trade "$bar" --vary constants.cells=12,3200 -o shared -q >first 2>&1 &
+first=$!
+for ((i = 0; i < 200; i++)); do runs=$(tr -d " " </proc/$first/task/$first/children) && [ -n "$(cat shared/runs/*/trial.json 2>/dev/null)" ] && break; sleep 0.05; done
+must "one at work in a folder" test -n "$runs"
+must "a second one there is told whose it is" says 1 "error: another abut is at work in the folder shared, process $first: wait until it has ended, or give another folder with -o" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o shared
+must "extremes as well" says 1 "at work in the folder shared/., process $first:" "$build/abut" extremes "$bar" --vary constants.cells=12,25 -o shared/.
+kill -KILL $first
+wait $first 2>/dev/null
+must "after it was killed a new one goes on" says 0 "2 of 2 .*cells=25: done" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o shared
+must "with what it had done" grep -q "cells=12: done before" said
+must "and its runs are gone" bash -c "! grep -s '^State:' /proc/$runs/status | grep -qv zombie" # where nobody collects orphans they stay as zombies
+kill -KILL $runs 2>/dev/null # should they not be
 mkdir copy && cp -r "$build/abut" "$build/plugins" copy/
 must "runs with another plugin are new ones" bash -c "
     copy/abut trade '$bar' --vary constants.cells=12 -o again -q >first && copy/abut trade '$bar' --vary constants.cells=12 -o again 2>&1 | grep -q 'done before' &&
