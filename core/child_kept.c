@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/child_runs.h"
@@ -147,6 +148,17 @@ void ab_child_over_limit(const ab_child_runs *runs, ab_child *child) {
     ab_child_say_why(child, why);
 }
 
+/* What a run has written and others read: cut off since, by a full disk or by hand, it is none. */
+static const char *const WRITTEN[] = {"summary.json", "history.csv"};
+enum { WRITTEN_COUNT = sizeof WRITTEN / sizeof *WRITTEN };
+
+static double size_of(const ab_child *child, const char *name) { /* bytes; -1: not there */
+    char path[4300];
+    struct stat file;
+    snprintf(path, sizeof path, "%s/%s", child->folder, name);
+    return stat(path, &file) == 0 ? (double)file.st_size : -1;
+}
+
 bool ab_child_take_kept(const ab_child_runs *runs, ab_child *child) {
     char path[4200];
     snprintf(path, sizeof path, "%s/trial.json", child->folder);
@@ -156,6 +168,8 @@ bool ab_child_take_kept(const ab_child_runs *runs, ab_child *child) {
     bool kept = report != NULL && ab_document_read(path, &document, report) == AB_OK;
     const ab_node *mark = kept ? ab_node_find(document->root, "fingerprint") : NULL;
     kept = mark != NULL && mark->kind == AB_NODE_SCALAR && strcmp(mark->text, runs->fingerprint) == 0;
+    const ab_node *sizes = kept ? ab_node_find(document->root, "bytes") : NULL;
+    for (int i = 0; kept && i < WRITTEN_COUNT; i++) kept = sizes != NULL && size_of(child, WRITTEN[i]) == number_of(sizes, WRITTEN[i]);
     if (kept) child->wall = number_of(document->root, "wall_seconds");
     const bool late = kept && (int)number_of(document->root, "exit") == AB_CHILD_STOPPED;
     if (late) { /* stopped at a limit: the same again unless there is more time now */
@@ -183,7 +197,12 @@ ab_status ab_child_keep(const ab_child_runs *runs, const ab_child *child, int st
     ab_text_add_number(&text, child->cpu);
     ab_text_add(&text, ", \"peak_bytes\": ");
     ab_text_add_number(&text, child->bytes);
-    ab_text_add(&text, "}\n");
+    ab_text_add(&text, ", \"bytes\": {");
+    for (int i = 0; i < WRITTEN_COUNT; i++) {
+        ab_text_add(&text, "%s\"%s\": ", i > 0 ? ", " : "", WRITTEN[i]);
+        ab_text_add_number(&text, size_of(child, WRITTEN[i]));
+    }
+    ab_text_add(&text, "}}\n");
     char path[4200];
     snprintf(path, sizeof path, "%s/trial.json", child->folder);
     ab_status made = ab_folder_make(child->folder, report);

@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/commands.h"
@@ -72,6 +73,11 @@ static ab_status check_values(const ab_command_line *line, const ab_scene *scene
 /* Whether --write can be: before all runs, rather than after them. */
 static ab_status check_place(const ab_command_line *line, ab_report *report) {
     if (line->write == NULL) return AB_OK;
+    struct stat scene, there;
+    if (stat(line->words[0], &scene) == 0 && stat(line->write, &there) == 0 && scene.st_dev == there.st_dev && scene.st_ino == there.st_ino)
+        return ab_report_error(
+            report, AB_NOWHERE,
+            "--write %s: that is the scene itself, whose comments would be lost; name another file", line->write);
     char folder[PATH_MAX];
     const char *slash = strrchr(line->write, '/');
     snprintf(folder, sizeof folder, "%.*s", slash == NULL ? 1 : (int)(slash - line->write) + (slash == line->write),

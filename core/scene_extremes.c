@@ -166,6 +166,15 @@ static void take_map(ab_scene_reader *r, const ab_node *node, ab_extremes_spec *
     if (spec->map[0] == spec->map[1] && spec->map[0] != SIZE_MAX)
         ab_report_error(r->base.report, node->mark, "extremes.map names '%.64s' twice; a map has two quantities",
                         spec->quantities[spec->map[0]].name);
+    else if (spec->map[0] != SIZE_MAX && spec->map[1] != SIZE_MAX) {
+        const ab_extreme *a = &spec->quantities[spec->map[0]], *b = &spec->quantities[spec->map[1]];
+        for (size_t i = 0; i < a->path_count; i++)
+            for (size_t k = 0; k < b->path_count; k++)
+                if (strcmp(a->paths[i], b->paths[k]) == 0)
+                    ab_report_error(r->base.report, node->mark,
+                                    "extremes.map: '%.64s' and '%.64s' both set %s, of which a run has one value; a map has two quantities",
+                                    a->name, b->name, a->paths[i]);
+    }
     spec->has_map = true;
 }
 

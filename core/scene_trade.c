@@ -111,6 +111,18 @@ static void take_judges(ab_scene_reader *r, const ab_node *node, ab_trade_spec *
     }
 }
 
+/* Of two ladders that set one path the first would change nothing. */
+static void check_apart(ab_scene_reader *r, const ab_trade_spec *trade, size_t i) {
+    for (size_t k = 0; k < i; k++)
+        for (size_t p = 0; p < trade->ladders[i].path_count; p++)
+            for (size_t q = 0; q < trade->ladders[k].path_count; q++)
+                if (strcmp(trade->ladders[i].paths[p], trade->ladders[k].paths[q]) == 0)
+                    ab_report_error(r->base.report, trade->ladders[i].mark,
+                                    "trade.vary[%zu]: %s is set by trade.vary[%zu], too, and a run has one value of it; put all its values "
+                                    "into one ladder",
+                                    i, trade->ladders[i].paths[p], k);
+}
+
 void ab_scene_take_trade(ab_scene_reader *r, const ab_node *node) {
     ab_trade_spec *trade = &r->scene->trade;
     const ab_key *key = ab_section_trade.keys;
@@ -140,6 +152,7 @@ void ab_scene_take_trade(ab_scene_reader *r, const ab_node *node) {
         char where[AB_WHERE];
         snprintf(where, sizeof where, "trade.vary[%zu]", i);
         take_ladder(r, vary->items[i], where, &trade->ladders[i]);
+        check_apart(r, trade, i);
         if (trade->ladders[i].value_count > 0 && runs <= AB_TRADE_RUNS) runs *= trade->ladders[i].value_count;
     }
     if (runs > AB_TRADE_RUNS)

@@ -90,5 +90,7 @@ must "values that none goes" says 2 "no value of 'bodies.bar.method' is accepted
 must "nothing to drive" says 2 "nothing to drive" bash -c "sed '/^extremes/,\$d' bar.yaml >bare.yaml; '$build/abut' extremes bare.yaml -o never"
 must "log through 0" says 2 "neither may be 0" "$build/abut" extremes bar.yaml --set extremes.vary[1].scale=log -o never
 must "a map of one" says 2 "no quantity 'mu'" "$build/abut" extremes bar.yaml --map dt,mu -o never
+must "a map of one path" says 2 "'a' and 'b' both set constants.nu, of which a run has one value" "$build/abut" extremes bar.yaml --set 'extremes={map: [a, b], vary: [{name: a, set: constants.nu, values: [0, 0.1]}, {name: b, set: constants.nu, values: [0, 0.1]}]}' -o never
+must "one path twice" says 2 "two quantities are called 'constants.nu'" "$build/abut" extremes bar.yaml --vary constants.nu=0,0.1 --vary constants.nu=0,0.2 -o never
 must "nothing is written where the input is wrong" test ! -e never
 [ $missed -eq 0 ]

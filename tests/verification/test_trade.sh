@@ -150,10 +150,22 @@ mkdir copy && cp -r "$build/abut" "$build/plugins" copy/
 must "runs with another plugin are new ones" bash -c "
     copy/abut trade '$bar' --vary constants.cells=12 -o again -q >first && copy/abut trade '$bar' --vary constants.cells=12 -o again 2>&1 | grep -q 'done before' &&
     printf 'x' >>copy/plugins/material/linear_elastic.so && copy/abut trade '$bar' --vary constants.cells=12 -o again 2>&1 | grep -q 'cells=12: done, '"
+"$build/abut" trade plain.yaml -o cut -q >first
+for file in summary.json history.csv; do
+    must "a run of which $file is cut off" bash -c "f=\$(ls -d cut/runs/20_*/)$file; truncate -s \$((\$(stat -c %s \$f) / 2)) \$f"
+    must "is made again, and only that" says 0 "cells=20: done, " "$build/abut" trade plain.yaml -o cut
+    must "the others stand" bash -c "[ \$(grep -c 'done before' said) = 2 ]"
+done
 must "a full disk is no verdict" bash -c "
     (ulimit -f 8; '$build/abut' trade '$bar' --vary constants.cells=12 -o full >first 2>&1); '$build/abut' trade '$bar' --vary constants.cells=12 -o full 2>&1 | grep -q 'cells=12: done, '"
 must "no run at all" says 1 "no run came to its end" "$build/abut" trade "$bar" --vary constants.cells=12 --set 'time={end: end, dt: "2*h/c"}' -o none
 must "a place that cannot be written" says 2 "cannot be written" "$build/abut" trade "$bar" --vary constants.cells=12 -o never --write nowhere/best.yaml
+cp "$bar" own.yaml && ln -s own.yaml link.yaml
+for name in own link; do
+    must "--write on the scene itself" says 2 "^error: --write ./$name.yaml: that is the scene itself, .*name another file" "$build/abut" trade own.yaml --vary constants.cells=12 -o never --write ./$name.yaml
+done
+must "it is as it was" cmp "$bar" own.yaml
+must "one path in two ladders" says 2 "trade.vary.1.: constants.cells is set by trade.vary.0., too, and a run has one value of it; put all" "$build/abut" trade "$bar" --vary constants.cells=12,25 --vary constants.cells=12,50 -o never
 must "an unknown constant" says 2 "did you mean 'cells'" "$build/abut" trade "$bar" --vary constants.cels=1,2 -o never
 must "values that none goes" says 2 "no value of 'bodies.bar.basis' is accepted" "$build/abut" trade "$bar" --vary bodies.bar.basis=liner,gimpp -o never
 must "nothing to try" says 2 "nothing to try" "$build/abut" trade "$bar" -o never
