@@ -111,30 +111,44 @@ static ab_status check_first_step(const ab_schedule *s, size_t b, ab_report *rep
 
 enum { FEW = 9 }; /* points: a body of one cell, with up to nine */
 
-/* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). */
+/* The choice `word` of a setting that has choices "a|b|c". */
+static bool chooses(const ab_param *param, const ab_value *value, const char *word) {
+    const char *text = param->choices;
+    for (int64_t k = 0; text && k < value->integer; ++k) text = strchr(text, '|') ? strchr(text, '|') + 1 : NULL;
+    return text && value->integer >= 0 && !strncmp(text, word, strlen(word)) && (text[strlen(word)] == '|' || !text[strlen(word)]);
+}
+
+/* A single point has no face: nodes beside it see it at an angle, and shared nodes would push it along what it lies on (tests/stability/small_bodies.yaml). Faces of a mesh say
+ * better. */
 static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
     const ab_class *finder = &contact->finder->class_;
     if (!is(finder->name, "multi-velocity") || !s->scene->watch) return AB_OK;
-    for (uint32_t k = 0; k < finder->nparam; ++k)
-        if (is(finder->param[k].name, "normal") && contact->finder_settings[k].integer < 0) return AB_OK; /* a direction */
+    bool faces = false;
+    for (uint32_t k = 0; k < finder->nparam; ++k) {
+        if (!is(finder->param[k].name, "normal")) continue;
+        if (contact->finder_settings[k].integer < 0) return AB_OK; /* a direction */
+        faces = chooses(finder->param + k, contact->finder_settings + k, "faces");
+    }
     for (int side = 0; side < 2; ++side) {
         const ab_body_spec *body = s->scene->bodies + contact->body[side];
         const ab_domain *domain = s->domains[contact->body[side]];
-        if (!is(body->method, "material-points")) continue;
+        const bool on_mesh = !is(s->scene->bodies[contact->body[1 - side]].method, "material-points");
+        if (!is(body->method, "material-points") || (faces && on_mesh)) continue;
         const size_t count = domain->ops->count(domain);
+        const char *remedy = on_mesh ? "normal: faces, algorithm point-to-segment" : "algorithm point-to-segment";
         if (count > 1 && count <= FEW)
             ab_report_warning(report, contact->mark,
                               "contact: body '%s' is %zu material points: the normals that algorithm multi-velocity finds for so few lean "
-                              "beside their corners, and may push it along what it lands on by a tenth of a cell; use algorithm "
-                              "point-to-segment, a direction as normal (out of the first body), or more points",
-                              body->name, count);
+                              "beside their corners, and may push it along what it lands on by a tenth of a cell; use %s, a "
+                              "direction as normal (out of the first body), or more points",
+                              body->name, count, remedy);
         if (count > 1) continue;
         return ab_report_error(
             report, contact->mark,
             "contact: body '%s' is a single material point, which shows no face to algorithm multi-velocity and would be pushed "
-            "along what it lies on; use algorithm point-to-segment, a direction as normal (out of the first body), or more points. "
+            "along what it lies on; use %s, a direction as normal (out of the first body), or more points. "
             "(watchdog: {stop: false} lets it be tried)",
-            body->name);
+            body->name, remedy);
     }
     return AB_OK;
 }

@@ -64,6 +64,9 @@ expect check 2 "contact: body 'stone' is a single material point" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=[0, -1]'
 expect check 0 "warning: contact: body 'stone' is 4 material points" small_bodies bodies.stone.fill.per_cell=4
 expect check 0 "warning: contact: body 'stone' is 9 material points" small_bodies bodies.stone.fill.per_cell=9
+expect check 2 "use normal: faces, algorithm point-to-segment, a direction as normal" small_bodies
+expect check 0 - small_bodies 'contact[0].normal=faces'
+expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=faces'
 expect check 0 - small_bodies bodies.stone.fill.per_cell=16
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=[0, -1]'
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].algorithm=point-to-segment'
