@@ -1,6 +1,7 @@
 /* doubts_springs.c: what springs will ask of the step. The step loop knows it once bodies have met and a boundary has been asked, by the masses of each node; here it is
  * estimated with the mass of half a cell or element under a face, rho h A/2. Of penalty springs the limit is up to a fifth below the estimate; of boundaries' springs it
- * may be above it by half, where elements share the spring out over more than their outermost nodes: so these are refused by a wide margin only. */
+ * may be above it by half, where elements share the spring out over more than their outermost nodes: so these are refused by a wide margin only. Penalty springs make no energy
+ * at any step, but with a fixed dt that is far too long they do not have the stiffness that was asked for: bodies overlap by what their first meeting left. */
 #include "core/doubts_springs.h"
 
 #include <math.h>
@@ -8,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double HOPELESS =
+    2; /* times the limit, of a fixed dt: somewhat above that bodies overlap by other than the spring says (tests/stability/penalty.yaml) */
 static const double SLOWER = 10;   /* times as many steps: said */
 static const double ENDLESS = 1e3; /* times: a spring that is a support, and no wave will ever come of it */
 
@@ -64,12 +67,12 @@ static longest longest_dt(const ab_scene *scene, uint64_t absent, bool boundary)
 }
 
 /* response penalty, stiffness_of modulus: k = stiffness M A/h on the effective mass of both faces. */
-static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
+static ab_status doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, ab_report *report) {
     enum { OF_MODULUS = 1 };
     const ab_class *law = &contact->responder->class_;
-    if (strcmp(law->name, "penalty") || !chosen(law, contact->responder_settings, "stiffness_of", OF_MODULUS)) return;
+    if (strcmp(law->name, "penalty") || !chosen(law, contact->responder_settings, "stiffness_of", OF_MODULUS)) return AB_OK;
     const ab_value *given = ab_doubt_setting(law, contact->responder_settings, "stiffness");
-    if (given == NULL) return; /* somebody's own plugin of that name */
+    if (given == NULL) return AB_OK; /* somebody's own plugin of that name */
     const double stiffness = given->real;
     double modulus = INFINITY, cell = INFINITY, lighter = 0.0;
     for (int side = 0; side < 2; ++side) {
@@ -79,10 +82,17 @@ static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, 
         cell = fmin(cell, it.length);
         lighter += 2.0 / (it.density * it.length); /* 1/(mass of half a cell), per area of face */
     }
-    if (!(lighter > 0.0) || !(cell > 0.0) || !isfinite(modulus)) return;
+    if (!(lighter > 0.0) || !(cell > 0.0) || !isfinite(modulus)) return AB_OK;
     const double dt = 2.0 * sqrt(cell / (stiffness * modulus * lighter));
     const char *a = s->scene->bodies[contact->body[0]].name, *b = s->scene->bodies[contact->body[1]].name;
     const longest step = longest_dt(s->scene, 0, false);
+    if (step.dt > HOPELESS * dt && s->scene->watch)
+        return ab_report_error(
+            report, contact->mark,
+            "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, and "
+            "%s is %.4g s, %.3g times that: they would not be as stiff as that; use a dt below the limit, cfl, stiffness below "
+            "%.2g, or stiffness_of: mass, which bears any dt. (watchdog: {stop: false} lets it be tried)",
+            a, b, stiffness, dt, step.key, step.dt, step.dt / dt, stiffness * pow(dt / step.dt, 2));
     if (step.dt > dt)
         ab_report_warning(report, contact->mark,
                           "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, and "
@@ -94,6 +104,7 @@ static void doubt_contact(const ab_schedule *s, const ab_contact_spec *contact, 
             "contact: where '%s' and '%s' meet, springs of stiffness %g x modulus are stable up to a dt of about %.3g s, so the "
             "step becomes %.2g times as short; use a stiffness of up to 3, or stiffness_of: mass, which bears any dt",
             a, b, stiffness, dt, s->critical_dt / dt);
+    return AB_OK;
 }
 
 /* Stiffness per area, Pa/m, of a viscoelastic boundary; 0 for others. */
@@ -180,7 +191,7 @@ static ab_status doubt_column(const ab_schedule *s, size_t number, ab_report *re
 }
 
 ab_status ab_doubt_springs(const ab_schedule *s, ab_report *report) {
-    for (size_t c = 0; c < s->scene->contact_count; ++c) doubt_contact(s, s->scene->contacts + c, report);
+    for (size_t c = 0; c < s->scene->contact_count; ++c) AB_TRY(doubt_contact(s, s->scene->contacts + c, report));
     for (size_t k = 0; k < s->scene->boundary_count; ++k) {
         AB_TRY(doubt_boundary(s, k, report));
         AB_TRY(doubt_column(s, k, report));

@@ -5,7 +5,7 @@
 #include "core/scheduler.h"
 
 /* With bodies and plugins made and the first step chosen. Warns of springs that a fixed dt is too long for, or that make the step by cfl much shorter; AB_BAD_INPUT where
- * springs of a boundary are so stiff that no run would end. */
+ * a fixed dt is more than twice as long as springs of contact bear, and where springs of a boundary are so stiff that no run would end. */
 ab_status ab_doubt_springs(const ab_schedule *schedule, ab_report *report);
 
 /* The setting of that name; NULL where the class has none. */
