@@ -223,8 +223,8 @@ static const double SHARP = 0.35; /* rad: a vertex where the outline turns by mo
 
 static int has_face(const ab_trace *t, size_t i) { return t->face_normal && t->face_distance[i] < INFINITY; }
 
-/* The normal of the nearest face of either body, out of a; of both, where both show one, that of the stiffer, or the mean where neither is. False: none is near, or only beside
- * a corner of the outline. */
+/* The unit normal of the nearest face of either body, out of a (trace->face_normal, found by contact/nearest_face.c); of both, where both show one, that of the stiffer, or the
+ * mean where neither is. 0: none is within two cells, or only beside a corner of the outline. */
 static int face_normal(const ab_trace *a, const ab_trace *b, size_t i, double n[3]) {
     const uint32_t d = a->dimension;
     const int of_a = has_face(a, i) && a->face_turn[i] <= SHARP, of_b = has_face(b, i) && b->face_turn[i] <= SHARP;

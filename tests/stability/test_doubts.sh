@@ -67,6 +67,9 @@ expect check 0 "warning: contact: body 'stone' is 9 material points" small_bodie
 expect check 2 "use normal: faces, algorithm point-to-segment, a direction as normal" small_bodies
 expect check 0 - small_bodies 'contact[0].normal=faces'
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=faces'
+expect check 0 "is 4 material points: .*; use algorithm point-to-segment, a direction" small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=faces' bodies.stone.basis=cpdi
+mesh='{method: finite-elements, material: stone, mesh: {box: [[-3, -1], [4, 0]], elements: [7, 1], type: q4}, fix: [{where: {side: bottom}, velocity: [0, 0]}], gravity: false}'
+expect check 0 "is 4 material points: .*; use algorithm point-to-segment, a direction" small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=faces' "bodies.plane=$mesh"
 expect check 0 - small_bodies bodies.stone.fill.per_cell=16
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].normal=[0, -1]'
 expect check 0 - small_bodies bodies.stone.fill.per_cell=4 'contact[0].algorithm=point-to-segment'
