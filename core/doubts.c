@@ -134,7 +134,8 @@ static ab_status doubt_single_point(const ab_schedule *s, const ab_contact_spec 
         const ab_body_spec *body = s->scene->bodies + contact->body[side];
         const ab_domain *domain = s->domains[contact->body[side]];
         if (!is(body->method, "material-points")) continue;
-        const bool mended = is(s->scene->bodies[contact->body[1 - side]].method, "rigid") && !is(body->basis, "cpdi"); /* by normal: faces */
+        const bool mended =
+            is(s->scene->bodies[contact->body[1 - side]].method, "rigid") && !is(body->basis, "cpdi"); /* by normal: faces */
         if (faces && mended) continue;
         const size_t count = domain->ops->count(domain);
         const char *remedy = mended ? "normal: faces, algorithm point-to-segment" : "algorithm point-to-segment";
@@ -172,7 +173,8 @@ static void doubt_rough(const ab_schedule *s, const ab_contact_spec *contact, ab
     ab_report_warning(
         report, contact->mark,
         "contact: friction %g is to hold '%s' and '%s' together, but where the centres of points touch (touching: centre) the two "
-        "passes ask for different motions, and it gives way by up to 3 %% of what it holds; use touching: auto or outline, or passes: first",
+        "passes ask for different motions, and it gives way by up to 3 %% of what it holds; use touching: auto or outline, or passes: "
+        "first",
         friction->real, s->scene->bodies[contact->body[0]].name, s->scene->bodies[contact->body[1]].name);
 }
 
