@@ -128,14 +128,15 @@ static bool keep_outline(mpm_body *body, ab_checkpoint *c) {
     if (!body->outline || body->outline->touching) return true;
     mpm_loops *loops = &body->outline->loops;
     size_t count = loops->count;
-    if (!ab_keep_count(c, "vertices", &count, 65)) return false;
+    if (!ab_keep_count(c, "vertices", &count, 81)) return false;
     if (ab_checkpoint_loads(c)) {
         if (!mpm_loops_reserve(loops, count)) return ab_checkpoint_refuse(c, "no memory for %zu vertices", count);
         loops->count = count;
     }
     const bool good = ab_keep_doubles(c, "vertex_x", loops->x, 2 * count) && ab_keep_u32(c, "vertex_next", loops->next, count) &&
                       ab_keep_u32(c, "vertex_prior", loops->prior, count) && ab_keep_flags(c, "vertex_corner", loops->corner, count) &&
-                      ab_keep_u32(c, "vertex_point", loops->point, 2 * count) && ab_keep_doubles(c, "vertex_arm", loops->arm, 4 * count);
+                      ab_keep_u32(c, "vertex_point", loops->point, 2 * count) && ab_keep_doubles(c, "vertex_arm", loops->arm, 4 * count) &&
+                      ab_keep_doubles(c, "vertex_slip", loops->slip, 2 * count);
     if (!good || !ab_checkpoint_loads(c)) return good;
     for (size_t k = 0; k < count; ++k)
         if (loops->next[k] >= count || loops->prior[loops->next[k]] != k || loops->point[2 * k] >= body->born ||

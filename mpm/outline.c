@@ -5,7 +5,11 @@
  *
  * Nothing holds such a vertex to its place on the body, and over many turns it would creep along the outline (by 0.15 of a cell a turn, and the corners with it).
  * So each has arms from the points under it, which stretch and turn as those points' domains do, and is drawn to where they end: the faster, the faster the
- * material deforms, so that bodies that move without deforming move their faces exactly. */
+ * material deforms, so that bodies that move without deforming move their faces exactly.
+ *
+ * And the faster, the more the vertex goes another way than its arms' ends. A body with fewer rows of points than rows of nodes (one point a cell; a thickness of less than two cells
+ * with two a cell) has velocities of nodes that no point sees. Forces that are out of balance there move nothing but such a vertex, and as strain is taken
+ * from velocities mapped back from points (musl, usavg, usf), nothing ever balances them: outlines at rest ran away from their points, by cells in 1e3 steps. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +22,7 @@ enum { NODES = 4 };
 static const double SPACING = 0.5;                   /* of a cell, between vertices */
 static const double SHORTEST = 0.125, LONGEST = 1.0; /* of a cell; faces that get shorter or longer are joined or divided */
 static const double DRAWN = 3.0; /* times the displacement gradient of a step: share by which a vertex nears its arm's end */
+static const double HELD = 100.0; /* times the way that it goes beyond them in a step, in cells: so it never stands off by more than 1/HELD of a cell for that */
 static const double FULL = 0.1;  /* of a point's mass: nodes with less fade */
 
 void mpm_outline_destroy(struct mpm_outline *o) {
@@ -28,7 +33,7 @@ void mpm_outline_destroy(struct mpm_outline *o) {
 }
 
 size_t mpm_outline_bytes(const struct mpm_outline *o) {
-    return o ? sizeof *o + o->loops.capacity * 65 + o->capacity * (16 + 8 + 20) + o->room * 12 + mpm_touching_bytes(o->touching) : 0;
+    return o ? sizeof *o + o->loops.capacity * 81 + o->capacity * (16 + 8 + 20) + o->room * 12 + mpm_touching_bytes(o->touching) : 0;
 }
 
 /* What a finder may see of surface points: themselves, or the outline between them near nodes of the grid. */
@@ -130,6 +135,19 @@ static ab_status lost(const mpm_body *body, const double x[2], ab_report *report
                              body->domain.spec->name, x[0] + body->origin[0], x[1] + body->origin[1]);
 }
 
+/* Adds up how far the points of a vertex went in this step, m; returns how many are left. */
+static int moved_by(const mpm_body *body, const uint32_t id[2], double by[2]) {
+    int found = 0;
+    for (int e = 0; e < (id[1] == id[0] ? 1 : 2); ++e) {
+        const uint32_t slot = body->slot[id[e]];
+        if (slot == UINT32_MAX) continue;
+        const double *point = mpm_block(body, slot / 8) + slot % 8;
+        for (int c = 0; c < 2; ++c) by[c] += point[8 * (ROW_NEXT + c)] - point[8 * (ROW_X + c)];
+        ++found;
+    }
+    return found;
+}
+
 ab_status mpm_outline_move(mpm_body *body, const ab_step *step, ab_report *report) {
     struct mpm_outline *o = body->outline;
     if (!o || o->touching) return AB_OK;
@@ -141,7 +159,12 @@ ab_status mpm_outline_move(mpm_body *body, const ab_step *step, ab_report *repor
         if (count == 0) return lost(body, loops->x + 2 * k, report);
         for (int n = 0; n < count; ++n)
             for (size_t c = 0; c < 2; ++c) v[c] += weight[n] * body->own[(size_t)dof[n] * OWN_RECORD + OWN_VELOCITY + c];
-        for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] += step->dt * v[c];
+        double by[2] = {0.0, 0.0};
+        const int points = moved_by(body, loops->point + 2 * k, by);
+        for (size_t c = 0; c < 2; ++c) {
+            loops->x[2 * k + c] += step->dt * v[c];
+            loops->slip[2 * k + c] = points ? step->dt * v[c] - by[c] / points : 0.0;
+        }
     }
     return mpm_loops_even(loops, SHORTEST * body->h, LONGEST * body->h, body->domain.spec->name, report);
 }
@@ -164,9 +187,9 @@ static void gradient_at(const mpm_body *body, uint32_t slot, double dt, double g
         }
 }
 
-/* Stretches the arm from a point to a vertex. Adds its end to end[2] and the size of the gradient to *size; false where the point has left through a side of the
+/* Stretches the arm from a point to a vertex. Adds its end to end[2], how far that went beyond the point to turned[2] and the size of the gradient to *size; false where the point has left through a side of the
  * grid. */
-static bool follow_point(const mpm_body *body, uint32_t id, double dt, double arm[2], double end[2], double *size) {
+static bool follow_point(const mpm_body *body, uint32_t id, double dt, double arm[2], double end[2], double turned[2], double *size) {
     const uint32_t slot = body->slot[id];
     if (slot == UINT32_MAX) return false;
     double g[2][2];
@@ -174,7 +197,9 @@ static bool follow_point(const mpm_body *body, uint32_t id, double dt, double ar
     const double old[2] = {arm[0], arm[1]}, *point = mpm_block(body, slot / 8) + slot % 8;
     double square = 0.0;
     for (int c = 0; c < 2; ++c) {
-        arm[c] += g[c][0] * old[0] + g[c][1] * old[1];
+        const double change = g[c][0] * old[0] + g[c][1] * old[1];
+        arm[c] += change;
+        turned[c] += change;
         end[c] += point[8 * (ROW_NEXT + c)] + arm[c];
         square += g[c][0] * g[c][0] + g[c][1] * g[c][1];
     }
@@ -187,14 +212,15 @@ void mpm_outline_follow(mpm_body *body, const ab_step *step) {
     mpm_loops *loops = &body->outline->loops;
     for (size_t k = 0; k < loops->count; ++k) {
         const uint32_t *id = loops->point + 2 * k;
-        double *arm = loops->arm + 4 * k, *x = loops->x + 2 * k, end[2] = {0.0, 0.0}, size = 0.0;
-        int found = follow_point(body, id[0], step->dt, arm, end, &size);
+        double *arm = loops->arm + 4 * k, *x = loops->x + 2 * k, end[2] = {0.0, 0.0}, turned[2] = {0.0, 0.0}, size = 0.0;
+        int found = follow_point(body, id[0], step->dt, arm, end, turned, &size);
         if (id[1] == id[0])
             arm[2] = arm[0], arm[3] = arm[1];
         else
-            found += follow_point(body, id[1], step->dt, arm + 2, end, &size);
+            found += follow_point(body, id[1], step->dt, arm + 2, end, turned, &size);
         if (!found) continue;
-        const double share = fmin(DRAWN * size / found, 1.0);
+        const double *slip = loops->slip + 2 * k, beyond = hypot(slip[0] - turned[0] / found, slip[1] - turned[1] / found) * body->inverse_h;
+        const double share = fmin(DRAWN * size / found + HELD * beyond, 1.0);
         for (int c = 0; c < 2; ++c) x[c] += share * (end[c] / found - x[c]);
     }
 }

@@ -14,6 +14,7 @@ typedef struct mpm_loops {
     bool *corner;    /* where the outline was drawn with a corner */
     uint32_t *point; /* 2 a vertex: under the outline before it and after it (or twice the same); the fill's number, which is its id */
     double *arm;     /* 2 for each of those, m: from the point to the vertex */
+    double *slip;    /* 2 a vertex, m: how far it went in the last step beyond the mean of those points */
 } mpm_loops;
 
 struct mpm_outline {

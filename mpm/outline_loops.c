@@ -131,7 +131,8 @@ bool mpm_loops_reserve(mpm_loops *loops, size_t count) {
     const size_t n = count + count / 2 + 16;
     if (!ab_memory_resize(&loops->x, 2 * n, sizeof(double)) || !ab_memory_resize(&loops->next, n, sizeof *loops->next) ||
         !ab_memory_resize(&loops->prior, n, sizeof *loops->prior) || !ab_memory_resize(&loops->corner, n, sizeof *loops->corner) ||
-        !ab_memory_resize(&loops->point, 2 * n, sizeof *loops->point) || !ab_memory_resize(&loops->arm, 4 * n, sizeof(double)))
+        !ab_memory_resize(&loops->point, 2 * n, sizeof *loops->point) || !ab_memory_resize(&loops->arm, 4 * n, sizeof(double)) ||
+        !ab_memory_resize(&loops->slip, 2 * n, sizeof(double)))
         return false;
     loops->capacity = n;
     return true;
@@ -141,7 +142,7 @@ bool mpm_loops_reserve(mpm_loops *loops, size_t count) {
 static bool add_vertex(mpm_loops *loops, const double x[2], bool corner, const uint32_t point[2], const double arm[4]) {
     if (!mpm_loops_reserve(loops, loops->count + 1)) return false;
     const size_t k = loops->count++;
-    for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] = x[c], loops->point[2 * k + c] = point[c];
+    for (size_t c = 0; c < 2; ++c) loops->x[2 * k + c] = x[c], loops->point[2 * k + c] = point[c], loops->slip[2 * k + c] = 0.0;
     for (size_t c = 0; c < 4; ++c) loops->arm[4 * k + c] = arm ? arm[c] : 0.0;
     loops->corner[k] = corner;
     return true;
@@ -280,7 +281,7 @@ out:
 }
 
 void mpm_loops_clear(mpm_loops *loops) {
-    free(loops->x), free(loops->next), free(loops->prior), free(loops->corner), free(loops->point), free(loops->arm);
+    free(loops->x), free(loops->next), free(loops->prior), free(loops->corner), free(loops->point), free(loops->arm), free(loops->slip);
     *loops = (mpm_loops){0};
 }
 
@@ -313,11 +314,14 @@ ab_status mpm_loops_even(mpm_loops *loops, double shortest, double longest, cons
             }
             const double *arm = loops->arm + 4 * k, *after = loops->arm + 4 * loops->next[k];
             if (!add_vertex(&even, x, loops->corner[k], loops->point + 2 * k, arm)) goto no_memory;
+            const double *slip = loops->slip + 2 * k, *its = loops->slip + 2 * loops->next[k];
+            for (size_t c = 0; c < 2; ++c) even.slip[2 * even.count - 2 + c] = slip[c];
             if (!(face_length(loops, k) > longest)) continue;
             const double half[2] = {0.5 * (b[0] - x[0]), 0.5 * (b[1] - x[1])}, middle[2] = {x[0] + half[0], x[1] + half[1]};
             const uint32_t points[2] = {loops->point[2 * k + 1], loops->point[2 * loops->next[k]]};
             const double arms[4] = {arm[2] + half[0], arm[3] + half[1], after[0] - half[0], after[1] - half[1]};
             if (!add_vertex(&even, middle, false, points, arms)) goto no_memory;
+            for (size_t c = 0; c < 2; ++c) even.slip[2 * even.count - 2 + c] = 0.5 * (slip[c] + its[c]);
         }
         close_loop(&even, first);
         begin = end_;
