@@ -117,8 +117,9 @@ static void tell(const ab_child_runs *runs, const ab_child *child) {
     const size_t ended = runs->count(runs->owner, &expected);
     if (expected < ended) expected = ended;
     if (!isatty(STDERR_FILENO)) {
-        fprintf(stderr, "%4zu of %zu  %s: %s%s, %.3g s\n", ended, expected, child->label, words[child->state], child->kept ? " before" : "",
-                child->cpu);
+        const bool failed = child->state == AB_CHILD_FAILED && child->why != NULL; /* of a full disk, all that follow do */
+        fprintf(stderr, "%4zu of %zu  %s: %s%s, %.3g s%s%.300s\n", ended, expected, child->label, words[child->state],
+                child->kept ? " before" : "", child->cpu, failed ? ": " : "", failed ? child->why : "");
         return;
     }
     char bar[31];

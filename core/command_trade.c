@@ -78,6 +78,8 @@ static ab_status check_place(const ab_command_line *line, ab_report *report) {
         return ab_report_error(
             report, AB_NOWHERE,
             "--write %s: that is the scene itself, whose comments would be lost; name another file", line->write);
+    if (stat(line->write, &there) == 0 && !S_ISREG(there.st_mode))
+        return ab_report_error(report, AB_NOWHERE, "--write %s: that is no file that a scene can be kept in; name another", line->write);
     char folder[PATH_MAX];
     const char *slash = strrchr(line->write, '/');
     snprintf(folder, sizeof folder, "%.*s", slash == NULL ? 1 : (int)(slash - line->write) + (slash == line->write),
@@ -101,12 +103,13 @@ static ab_status write_scene(const ab_command_line *line, const ab_trade *trade,
                 status = ab_document_set(document, ladder->paths[p], ladder->values[trade->trials[chosen].rung[k]], report);
     }
     ab_text text = {0};
-    char settings[2000];
+    char settings[2000], place[PATH_MAX]; /* where a link leads to; a file that is not there yet is its own place */
+    const char *file = realpath(line->write, place) != NULL ? place : line->write;
     ab_text_add(&text, "# %s with %s\n", trade->runs.scene, ab_trade_settings(trade, &trade->trials[chosen], settings, sizeof settings));
     ab_document_write(&text, document);
     if (status == AB_OK)
         status = text.failed ? ab_report_failure(report, "no memory for %s", line->write)
-                             : ab_file_replace(line->write, text.bytes, text.count, report);
+                             : ab_file_replace(file, text.bytes, text.count, report);
     ab_text_clear(&text);
     ab_document_destroy(document);
     if (status == AB_OK) printf("  %s holds the scene with %s\n", line->write, settings);
@@ -131,7 +134,7 @@ static ab_status trade_scene(const ab_command_line *line, const ab_scene *scene,
     if (status == AB_OK || stopped) { /* what is done is judged all the same */
         ab_trade_judge(&trade, report);
         ab_status judged = ab_trade_write(&trade, report);
-        if (judged == AB_OK) ab_trade_table(&trade, stdout);
+        ab_trade_table(&trade, stdout); /* also where there is no room for the files */
         if (judged == AB_OK && line->write != NULL) {
             size_t chosen = ab_trade_cheapest(&trade, scene->trade.tolerance);
             if (chosen == SIZE_MAX) chosen = ab_trade_most_accurate(&trade, scene->trade.seconds);

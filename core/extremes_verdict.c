@@ -7,8 +7,7 @@
 #include "core/document.h"
 #include "core/extremes.h"
 
-static const double MASS = 1e-9;     /* of the mass at the start: less is rounding */
-static const double ROUNDING = 1e-6; /* of the kinetic energy at the end: what only flies on moves no energy but rounding */
+static const double MASS = 1e-9; /* of the mass at the start: less is rounding */
 
 const char *ab_verdict_name(ab_verdict verdict) {
     static const char *const names[] = {"not known", "right", "wrong", "unstable", "refused"};
@@ -84,7 +83,6 @@ static void judge_summary(const ab_extremes *x, ab_sample *s) {
         judge_expects(x, s, ab_node_find(root, "expects"));
         const ab_node *ledger = ab_node_find(root, "ledger");
         s->remainder = number_of(ledger, "remainder_relative");
-        if (fabs(number_of(ledger, "remainder")) <= ROUNDING * number_of(ab_node_find(ledger, "end"), "kinetic")) s->remainder = 0.0;
         const double before = mass_of(root, "start"), after = mass_of(root, "end");
         if (!isfinite(s->remainder))
             say(s, AB_VERDICT_UNSTABLE, "the ledger came out as no number");

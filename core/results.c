@@ -120,6 +120,14 @@ double ab_results_moved(const ab_results *results, const ab_state_view *view) {
     return most;
 }
 
+/* Of the kinetic energy: a remainder of less is rounding. A body that only moves on moves no energy but that. */
+static const double ROUNDING = 1e-6;
+
+double ab_results_remainder(const ab_results *results, const ab_state_view *view) {
+    const double moved = ab_results_moved(results, view);
+    return moved > 0 && !(fabs(view->remainder) <= ROUNDING * view->total.kinetic) ? view->remainder / moved : 0;
+}
+
 static ab_status sample(ab_results *results, const ab_state_view *view, bool last, ab_report *report) {
     for (size_t e = 0; e < results->expect_count; e++) {
         ab_expect *expect = &results->expects[e];
@@ -179,11 +187,11 @@ ab_status ab_results_frame(ab_results *results, const ab_state_view *view, ab_re
 }
 
 /* A run whose ledger is left open by more than this part of the energy that moved is no result to build on, and says so. */
-static const double ALARM = 0.1, ROUNDING = 1e-6; /* of the kinetic energy: a body that only moves on has nothing else */
+static const double ALARM = 0.1;
 
 static void alarm_of_remainder(const ab_results *results, const ab_state_view *view, ab_report *report) {
-    const double moved = ab_results_moved(results, view);
-    if (!(fabs(view->remainder) > ALARM * moved) || !(fabs(view->remainder) > ROUNDING * view->total.kinetic)) return;
+    const double relative = ab_results_remainder(results, view);
+    if (!(fabs(relative) > ALARM)) return;
     bool points = false, elements = false, linear = false, usl = false;
     for (size_t b = 0; b < view->scene->body_count; b++) {
         const ab_body_spec *spec = &view->scene->bodies[b];
@@ -195,7 +203,7 @@ static void alarm_of_remainder(const ab_results *results, const ab_state_view *v
     ab_report_warning(
         report, view->scene->mark_time,
         "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s%s%s may help",
-        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(view->remainder) / moved, points ? "a finer grid, " : "",
+        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(relative), points ? "a finer grid, " : "",
         linear ? "basis gimp, " : "", usl ? "update musl, " : "", elements ? "more elements, " : "",
         points || elements ? "or a smaller dt" : "a smaller dt");
 }

@@ -60,6 +60,8 @@ ab_status ab_results_clear(const ab_results *results, bool checkpoints, ab_repor
 
 /* Largest change of a term of the whole scene between the start and now. */
 double ab_results_moved(const ab_results *results, const ab_state_view *view);
+/* The ledger's remainder as a part of that; 0 where it is no more than rounding of the kinetic energy. */
+double ab_results_remainder(const ab_results *results, const ab_state_view *view);
 /* summary.json, in one piece. */
 ab_status ab_summary_write(const ab_results *results, const ab_state_view *view, const ab_run_facts *facts, ab_report *report);
 

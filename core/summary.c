@@ -37,7 +37,7 @@ static void ledger(ab_text *text, const ab_results *results, const ab_state_view
     energy(text, &view->total, scene);
     number(text, ",\n    \"remainder\": ", view->remainder);
     number(text, ",\n    \"largest_moved\": ", moved);
-    number(text, ",\n    \"remainder_relative\": ", moved > 0 ? view->remainder / moved : 0);
+    number(text, ",\n    \"remainder_relative\": ", ab_results_remainder(results, view));
     ab_text_add(text, ",\n    \"bodies\": {");
     for (size_t b = 0; b < scene->body_count; b++) {
         ab_text_add(text, "%s\n      ", b > 0 ? "," : "");

@@ -5,7 +5,6 @@
 #include "core/results_inner.h"
 
 static void ledger(const ab_results *results, const ab_state_view *view, FILE *stream) {
-    const double moved = ab_results_moved(results, view);
     fprintf(stream, "\n  %-14s %14s %14s\n", "energy, J", "start", "end");
     for (size_t term = 0; term < AB_TERMS; term++) {
         double start = 0;
@@ -15,7 +14,7 @@ static void ledger(const ab_results *results, const ab_state_view *view, FILE *s
         fprintf(stream, "  %-14s %14.6g %14.6g\n", ab_term_name(term), start, end);
     }
     fprintf(stream, "  %-14s %14s %14.6g", "remainder", "", view->remainder);
-    if (moved > 0) fprintf(stream, "  %.3g %% of the largest that moved", 100 * view->remainder / moved);
+    if (ab_results_moved(results, view) > 0) fprintf(stream, "  %.3g %% of the largest that moved", 100 * ab_results_remainder(results, view));
     fprintf(stream, "\n");
 }
 

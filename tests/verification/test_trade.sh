@@ -158,6 +158,7 @@ for file in summary.json history.csv; do
 done
 must "a full disk is no verdict" bash -c "
     (ulimit -f 8; '$build/abut' trade '$bar' --vary constants.cells=12 -o full >first 2>&1); '$build/abut' trade '$bar' --vary constants.cells=12 -o full 2>&1 | grep -q 'cells=12: done, '"
+must "and the table is shown, with what each run said" bash -c "grep -q 'cells=12: failed, .*: cannot write ' first && grep -q 'constants.cells' first"
 must "no run at all" says 1 "no run came to its end" "$build/abut" trade "$bar" --vary constants.cells=12 --set 'time={end: end, dt: "2*h/c"}' -o none
 must "a place that cannot be written" says 2 "cannot be written" "$build/abut" trade "$bar" --vary constants.cells=12 -o never --write nowhere/best.yaml
 cp "$bar" own.yaml && ln -s own.yaml link.yaml
@@ -165,6 +166,11 @@ for name in own link; do
     must "--write on the scene itself" says 2 "^error: --write ./$name.yaml: that is the scene itself, .*name another file" "$build/abut" trade own.yaml --vary constants.cells=12 -o never --write ./$name.yaml
 done
 must "it is as it was" cmp "$bar" own.yaml
+mkfifo pipe && : >kept.yaml && ln -s kept.yaml chain.yaml
+must "--write into what is no file" says 2 "^error: --write pipe: that is no file" "$build/abut" trade "$bar" --vary constants.cells=12 -o never --write pipe
+must "it is still there" test -p pipe
+must "--write over a link" says 0 "holds the scene" "$build/abut" trade "$bar" --vary constants.cells=12 -o chained --write chain.yaml
+must "goes to where it leads" bash -c "test -L chain.yaml && grep -q 'constants.cells=12' kept.yaml"
 must "one path in two ladders" says 2 "trade.vary.1.: constants.cells is set by trade.vary.0., too, and a run has one value of it; put all" "$build/abut" trade "$bar" --vary constants.cells=12,25 --vary constants.cells=12,50 -o never
 must "an unknown constant" says 2 "did you mean 'cells'" "$build/abut" trade "$bar" --vary constants.cels=1,2 -o never
 must "values that none goes" says 2 "no value of 'bodies.bar.basis' is accepted" "$build/abut" trade "$bar" --vary bodies.bar.basis=liner,gimpp -o never
