@@ -45,7 +45,7 @@ static const ab_command commands[] = {
      "trade.svg land in the results folder.\n"
      "  abut trade tests/verification/bar_1.yaml --vary constants.cells=25,50,100 --vary bodies.bar.basis=linear,gimp --tolerance 1e-2",
      AB_OPTION_OUTPUT | AB_OPTION_THREADS | AB_OPTION_SET | AB_OPTION_PLUGIN_PATH | AB_OPTION_FORCE_PLUGINS | AB_OPTION_QUIET |
-         AB_OPTION_VARY | AB_OPTION_TOLERANCE | AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_WRITE | AB_OPTION_PATH,
+         AB_OPTION_VARY | AB_OPTION_TOLERANCE | AB_OPTION_SECONDS | AB_OPTION_JOBS | AB_OPTION_LIMIT | AB_OPTION_WRITE | AB_OPTION_PATH,
      1, 1, ab_command_trade},
     {"extremes", "SCENE", "how far quantities go: where a run stops being right, where it stops being stable, from where it is refused",
      "The quantities are those of the scene's `extremes` (abut help scene), or given by --vary PATH=FROM..TO or PATH=a,b,c; each is "

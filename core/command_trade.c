@@ -16,9 +16,9 @@ static void add_vary(ab_text *text, const ab_override *vary, bool first) {
     ab_text_add(text, ", values: [%s]}", vary->value);
 }
 
-/* The scene, read with all of --set and with --vary, --tolerance and --seconds as settings of its `trade`. */
+/* The scene, read with all of --set and with --vary, --tolerance, --seconds and --limit as settings of its `trade`. */
 static ab_status read_scene(const ab_command_line *line, ab_registry **registry, ab_scene **scene, ab_report *report) {
-    ab_override more[4];
+    ab_override more[5];
     size_t count = 0;
     ab_text vary = {0};
     for (size_t i = 0; i < line->vary_count; i++) add_vary(&vary, &line->vary[i], i == 0);
@@ -27,6 +27,7 @@ static ab_status read_scene(const ab_command_line *line, ab_registry **registry,
     if (line->tolerance != NULL) more[count++] = (ab_override){"trade.tolerance", line->tolerance};
     if (line->path) more[count++] = (ab_override){"trade.search", "path"};
     if (line->seconds != NULL) more[count++] = (ab_override){"trade.seconds", line->seconds};
+    if (line->limit != NULL) more[count++] = (ab_override){"trade.limit", line->limit};
     ab_status status = AB_FAILED;
     if (vary.failed)
         fprintf(stderr, "abut: error: no memory\n");
@@ -75,9 +76,8 @@ static ab_status check_place(const ab_command_line *line, ab_report *report) {
     if (line->write == NULL) return AB_OK;
     struct stat scene, there;
     if (stat(line->words[0], &scene) == 0 && stat(line->write, &there) == 0 && scene.st_dev == there.st_dev && scene.st_ino == there.st_ino)
-        return ab_report_error(
-            report, AB_NOWHERE,
-            "--write %s: that is the scene itself, whose comments would be lost; name another file", line->write);
+        return ab_report_error(report, AB_NOWHERE, "--write %s: that is the scene itself, whose comments would be lost; name another file",
+                               line->write);
     if (stat(line->write, &there) == 0 && !S_ISREG(there.st_mode))
         return ab_report_error(report, AB_NOWHERE, "--write %s: that is no file that a scene can be kept in; name another", line->write);
     char folder[PATH_MAX];

@@ -24,7 +24,8 @@ ab_status ab_doubt_weight(const ab_schedule *s, size_t b, ab_report *report) {
     const ab_body_spec *body = scene->bodies + b;
     const ab_domain *domain = s->domains[b];
     if (!body->gravity || body->material >= scene->material_count || ab_domain_is_rigid(domain) || !scene->watch) return AB_OK;
-    const double density = scene->materials[body->material].density, modulus = domain->ops->modulus(domain), speed = sqrt(modulus / density);
+    const double density = scene->materials[body->material].density, modulus = domain->ops->modulus(domain),
+                 speed = sqrt(modulus / density);
     double g[2], most = 0.0, at_once[2];
     for (int c = 0; c < 2; ++c) {
         at_once[c] = ab_number_at(scene->gravity + c, 0.5 * s->dt, 0.0, 0.0, 0.0);
@@ -33,7 +34,8 @@ ab_status ab_doubt_weight(const ab_schedule *s, size_t b, ab_report *report) {
     /* A step lasts as long as a wave takes through a cell, or element: what is faster than the wave after one has fallen by that much. */
     if (hypot(at_once[0], at_once[1]) * s->dt > speed)
         return ab_report_error(report, scene->mark_gravity,
-                               "gravity: by %.4g m/s2 body '%s' would move at %.4g m/s after its first step of %.4g s, faster than waves in it (%.4g m/s); look at the units of gravity "
+                               "gravity: by %.4g m/s2 body '%s' would move at %.4g m/s after its first step of %.4g s, faster than waves "
+                               "in it (%.4g m/s); look at the units of gravity "
                                "(9.81 m/s2, 9810 mm/s2), E and density. (watchdog: {stop: false} lets it be tried)",
                                hypot(at_once[0], at_once[1]), body->name, hypot(at_once[0], at_once[1]) * s->dt, s->dt, speed);
     const double size = hypot(g[0], g[1]);
@@ -41,7 +43,8 @@ ab_status ab_doubt_weight(const ab_schedule *s, size_t b, ab_report *report) {
     AB_TRY(height_along(domain, g, size, &most, report));
     if (density * size * most > modulus)
         ab_report_warning(report, scene->mark_gravity,
-                          "gravity: by %.4g m/s2 a column of body '%s', %.3g m high, weighs %.3g Pa, %.3g times the modulus that bears it: nothing of it would be left standing; look at the "
+                          "gravity: by %.4g m/s2 a column of body '%s', %.3g m high, weighs %.3g Pa, %.3g times the modulus that bears it: "
+                          "nothing of it would be left standing; look at the "
                           "units of gravity (9.81 m/s2, 9810 mm/s2), E and density",
                           size, body->name, most, density * size * most, density * size * most / modulus);
     return AB_OK;

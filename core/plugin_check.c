@@ -238,7 +238,8 @@ bool ab_check_class(const ab_class *given, ab_class_copy *copy, ab_refusal *refu
         return ab_refuse(refusal, "(class '%s') is for spaces 0x%x, which are none", class_->name, class_->spaces);
     if (!class_->create != !class_->destroy || (!class_->create && class_->nparam > 0))
         return ab_refuse(refusal, "(class '%s') lacks create or destroy", class_->name);
-    if (!class_->save != !class_->load) return ab_refuse(refusal, "(class '%s') has one of save and load; it needs both or neither", class_->name);
+    if (!class_->save != !class_->load)
+        return ab_refuse(refusal, "(class '%s') has one of save and load; it needs both or neither", class_->name);
     if (class_->nparam > AB_PARAMS_MAX)
         return ab_refuse(refusal, "(class '%s') declares %u settings; %d are possible", class_->name, class_->nparam, AB_PARAMS_MAX);
     if (class_->nstate > AB_STATES_MAX)

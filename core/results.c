@@ -203,9 +203,8 @@ static void alarm_of_remainder(const ab_results *results, const ab_state_view *v
     ab_report_warning(
         report, view->scene->mark_time,
         "the discretisation %s %.3g %% of the energy that moved (the ledger's remainder): no result to build on; %s%s%s%s%s may help",
-        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(relative), points ? "a finer grid, " : "",
-        linear ? "basis gimp, " : "", usl ? "update musl, " : "", elements ? "more elements, " : "",
-        points || elements ? "or a smaller dt" : "a smaller dt");
+        view->remainder > 0.0 ? "made" : "lost", 100.0 * fabs(relative), points ? "a finer grid, " : "", linear ? "basis gimp, " : "",
+        usl ? "update musl, " : "", elements ? "more elements, " : "", points || elements ? "or a smaller dt" : "a smaller dt");
 }
 
 /* Each part is finished whatever happens to the others; the first trouble is the answer. */

@@ -14,7 +14,8 @@ static void ledger(const ab_results *results, const ab_state_view *view, FILE *s
         fprintf(stream, "  %-14s %14.6g %14.6g\n", ab_term_name(term), start, end);
     }
     fprintf(stream, "  %-14s %14s %14.6g", "remainder", "", view->remainder);
-    if (ab_results_moved(results, view) > 0) fprintf(stream, "  %.3g %% of the largest that moved", 100 * ab_results_remainder(results, view));
+    if (ab_results_moved(results, view) > 0)
+        fprintf(stream, "  %.3g %% of the largest that moved", 100 * ab_results_remainder(results, view));
     fprintf(stream, "\n");
 }
 

@@ -157,11 +157,11 @@ static bool keep_datum(mpm_body *body, ab_checkpoint *c) {
 
 void mpm_keep(ab_domain *domain, ab_checkpoint *c) {
     mpm_body *body = (mpm_body *)domain;
-    const bool good = keep_points(body, c) && keep_datum(body, c) && keep_loads(body, c) && mpm_edges_keep(body, c) && keep_outline(body, c) &&
-                      ab_keep_flags(c, "sort_due", &body->sort_due, 1) && ab_keep_doubles(c, "wave_speed", &body->wave_speed, 1) &&
-                      ab_keep_doubles(c, "largest_speed", &body->largest_speed, 1) &&
-                      ab_keep_doubles(c, "last_strain", &body->last_strain, 1) && ab_keep_struct(c, "energy", &body->energy) &&
-                      ab_keep_struct(c, "motion", &body->motion) &&
-                      ab_keep_plugin(c, "material", &body->material->loaded->class_, body->self);
+    const bool good =
+        keep_points(body, c) && keep_datum(body, c) && keep_loads(body, c) && mpm_edges_keep(body, c) && keep_outline(body, c) &&
+        ab_keep_flags(c, "sort_due", &body->sort_due, 1) && ab_keep_doubles(c, "wave_speed", &body->wave_speed, 1) &&
+        ab_keep_doubles(c, "largest_speed", &body->largest_speed, 1) && ab_keep_doubles(c, "last_strain", &body->last_strain, 1) &&
+        ab_keep_struct(c, "energy", &body->energy) && ab_keep_struct(c, "motion", &body->motion) &&
+        ab_keep_plugin(c, "material", &body->material->loaded->class_, body->self);
     if (good && ab_checkpoint_loads(c)) check_places(body, c), body->scattered = false;
 }

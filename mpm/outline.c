@@ -22,8 +22,9 @@ enum { NODES = 4 };
 static const double SPACING = 0.5;                   /* of a cell, between vertices */
 static const double SHORTEST = 0.125, LONGEST = 1.0; /* of a cell; faces that get shorter or longer are joined or divided */
 static const double DRAWN = 3.0; /* times the displacement gradient of a step: share by which a vertex nears its arm's end */
-static const double HELD = 100.0; /* times the way that it goes beyond them in a step, in cells: so it never stands off by more than 1/HELD of a cell for that */
-static const double FULL = 0.1;  /* of a point's mass: nodes with less fade */
+static const double HELD =
+    100.0; /* times the way that it goes beyond them in a step, in cells: so it never stands off by more than 1/HELD of a cell for that */
+static const double FULL = 0.1; /* of a point's mass: nodes with less fade */
 
 void mpm_outline_destroy(struct mpm_outline *o) {
     if (!o) return;
@@ -219,7 +220,8 @@ void mpm_outline_follow(mpm_body *body, const ab_step *step) {
         else
             found += follow_point(body, id[1], step->dt, arm + 2, end, turned, &size);
         if (!found) continue;
-        const double *slip = loops->slip + 2 * k, beyond = hypot(slip[0] - turned[0] / found, slip[1] - turned[1] / found) * body->inverse_h;
+        const double *slip = loops->slip + 2 * k,
+                     beyond = hypot(slip[0] - turned[0] / found, slip[1] - turned[1] / found) * body->inverse_h;
         const double share = fmin(DRAWN * size / found + HELD * beyond, 1.0);
         for (int c = 0; c < 2; ++c) x[c] += share * (end[c] / found - x[c]);
     }

@@ -130,7 +130,7 @@ must "a ladder of what refines nothing tends to no limit" says 0 "the finest run
 must "monitors that count are named" says 0 "the largest of 'v'$" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[v]'
 must "a monitor that is not there" says 2 "there is no monitor 'vv'; known: tip, v" "$build/abut" trade plain.yaml -o plain --set 'trade.error=[vv]'
 must "a run that fails is a row, not the end" says 0 "refused" "$build/abut" trade "$bar" --vary bodies.bar.transfer=flip,tpic --vary bodies.bar.update=musl,usl --set constants.cells=12 -o refused
-must "the limit stops dear runs" says 0 "cheaper run is over the limit" "$build/abut" trade "$bar" --vary constants.cells=12,1600,3200 --set trade.limit=3 -o limit
+must "the limit stops dear runs" says 0 "cheaper run is over the limit" "$build/abut" trade "$bar" --vary constants.cells=12,1600,3200 --limit 3 -o limit
 must "a signal leaves what is done" says 124 "1 of 2 runs have no answer" timeout -s INT 6 "$build/abut" trade "$bar" --vary constants.cells=12,1600 -o signal
 must "and it goes on from there" says 0 "done before" "$build/abut" trade "$bar" --vary constants.cells=12,25 -o signal
 # A folder is of one program at a time; of one that was killed its runs are gone, too, and the next goes on at once.
