@@ -33,6 +33,10 @@ for scene in sorted(glob.glob("tests/stability/*.yaml")):
     found = json.load(open(folder + "/extremes.json"))
     text = open(folder + "/table.txt").read()
     table = [line for line in text.splitlines() if line.startswith("|")]
+    for i, q in enumerate(found["quantities"]):  # the terminal's table cuts long names off
+        cells = table[2 + i].split(" | ")
+        assert q["name"].startswith(cells[0][2:].removesuffix("...")), (q["name"], cells[0])
+        table[2 + i] = " | ".join(["| " + q["name"]] + cells[1:])
     parts.append(f"### {found['title']}\n\n    abut extremes {scene}\n\n" + "\n".join(table) + "\n")
     notes = [line.strip() for line in text.splitlines() if "does not go one way" in line]
     for q in found["quantities"]:
