@@ -1,4 +1,4 @@
-/* command_check.c: abut check: everything that can be known to be wrong without running. */
+/* command_check.c: abut check: everything that can be known to be wrong without running, or but for a first step in memory. */
 #include "core/commands.h"
 #include "core/doubts.h"
 
@@ -39,6 +39,8 @@ int ab_command_check(const ab_command_line *line) {
             ab_schedule_view(schedule, &view);
             status = ab_results_check(scene, &view, report);
         }
+        if (status == AB_OK && scene->contact_count)
+            status = ab_schedule_step(schedule, report); /* of bodies that are drawn into each other only contact knows */
         ab_schedule_destroy(schedule);
         const size_t warnings = ab_report_warnings(report);
         ab_report_print(report, stderr);

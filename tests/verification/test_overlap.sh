@@ -1,6 +1,6 @@
 #!/bin/bash
 # cost: 1
-# Bodies that are drawn into each other are told of before the run goes on: how many points, nodes or corners of each lie in the other and how deep, wherever the grid
+# Bodies that are drawn into each other are told of by abut check and before a run goes on: how many points, nodes or corners of each lie in the other and how deep, wherever the grid
 # begins; bodies side by side are not. test_overlap.sh BUILD
 set -eu
 build=${1:?the build folder}
@@ -24,6 +24,8 @@ wrong=0
 tell() { # name, words or nothing, what makes the scene
     scene "$3" "$4" "$5" >"$scratch/$1.yaml"
     "$build/abut" run "$scratch/$1.yaml" --quiet -j 1 -o "$scratch/$1" >"$scratch/$1.log" 2>&1 || { cat "$scratch/$1.log"; wrong=1; }
+    "$build/abut" check "$scratch/$1.yaml" >"$scratch/$1.check" 2>&1 || { cat "$scratch/$1.check"; wrong=1; }
+    cmp <(grep 'overlap' "$scratch/$1.log") <(grep 'overlap' "$scratch/$1.check") || { echo "$1: check and run tell otherwise"; wrong=1; }
     if [ -z "$2" ]; then
         ! grep 'overlap at the start' "$scratch/$1.log" || { echo "$1: nothing overlaps"; wrong=1; }
     else
