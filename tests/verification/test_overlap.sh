@@ -25,7 +25,7 @@ tell() { # name, words or nothing, what makes the scene
     scene "$3" "$4" "$5" >"$scratch/$1.yaml"
     "$build/abut" run "$scratch/$1.yaml" --quiet -j 1 -o "$scratch/$1" >"$scratch/$1.log" 2>&1 || { cat "$scratch/$1.log"; wrong=1; }
     "$build/abut" check "$scratch/$1.yaml" >"$scratch/$1.check" 2>&1 || { cat "$scratch/$1.check"; wrong=1; }
-    cmp <(grep 'overlap' "$scratch/$1.log") <(grep 'overlap' "$scratch/$1.check") || { echo "$1: check and run tell otherwise"; wrong=1; }
+    cmp <(grep 'overlap at the start' "$scratch/$1.log") <(grep 'overlap at the start' "$scratch/$1.check") || { echo "$1: check and run tell otherwise"; wrong=1; }
     if [ -z "$2" ]; then
         ! grep 'overlap at the start' "$scratch/$1.log" || { echo "$1: nothing overlaps"; wrong=1; }
     else
