@@ -75,10 +75,11 @@ static ab_status check_values(const ab_command_line *line, const ab_scene *scene
 static ab_status check_place(const ab_command_line *line, ab_report *report) {
     if (line->write == NULL) return AB_OK;
     struct stat scene, there;
-    if (stat(line->words[0], &scene) == 0 && stat(line->write, &there) == 0 && scene.st_dev == there.st_dev && scene.st_ino == there.st_ino)
+    const bool is_there = stat(line->write, &there) == 0;
+    if (is_there && stat(line->words[0], &scene) == 0 && scene.st_dev == there.st_dev && scene.st_ino == there.st_ino)
         return ab_report_error(report, AB_NOWHERE, "--write %s: that is the scene itself, whose comments would be lost; name another file",
                                line->write);
-    if (stat(line->write, &there) == 0 && !S_ISREG(there.st_mode))
+    if (is_there && !S_ISREG(there.st_mode))
         return ab_report_error(report, AB_NOWHERE, "--write %s: that is no file that a scene can be kept in; name another", line->write);
     char folder[PATH_MAX];
     const char *slash = strrchr(line->write, '/');

@@ -23,7 +23,7 @@ static const double SPACING = 0.5;                   /* of a cell, between verti
 static const double SHORTEST = 0.125, LONGEST = 1.0; /* of a cell; faces that get shorter or longer are joined or divided */
 static const double DRAWN = 3.0; /* times the displacement gradient of a step: share by which a vertex nears its arm's end */
 static const double HELD =
-    100.0; /* times the way that it goes beyond them in a step, in cells: so it never stands off by more than 1/HELD of a cell for that */
+    100.0; /* times the way that it goes beyond its arm's end in a step, in cells: it stands off by 1/HELD of a cell for that at most */
 static const double FULL = 0.1; /* of a point's mass: nodes with less fade */
 
 void mpm_outline_destroy(struct mpm_outline *o) {
@@ -188,8 +188,8 @@ static void gradient_at(const mpm_body *body, uint32_t slot, double dt, double g
         }
 }
 
-/* Stretches the arm from a point to a vertex. Adds its end to end[2], how far that went beyond the point to turned[2] and the size of the gradient to *size; false where the point has left through a side of the
- * grid. */
+/* Stretches the arm from a point to a vertex. Adds its end to end[2], how far that went beyond the point to turned[2] and the size of the gradient to *size; false where
+ * the point has left through a side of the grid. */
 static bool follow_point(const mpm_body *body, uint32_t id, double dt, double arm[2], double end[2], double turned[2], double *size) {
     const uint32_t slot = body->slot[id];
     if (slot == UINT32_MAX) return false;
